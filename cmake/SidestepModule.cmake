@@ -1,0 +1,46 @@
+include_guard()
+
+# What every target of the project is compiled with. Interface only: nothing of it reaches users.
+add_library(sidestep_warnings INTERFACE)
+target_compile_options(sidestep_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror
+                                                   -ffp-contract=off)
+
+# sidestep_module(<folder> SOURCES <file>... [DEPENDS <public target>...]
+#                 [PRIVATE_DEPENDS <target>...])
+#
+# One folder, one static library, one alias sidestep::<folder>. Include paths start at the
+# repository root. DEPENDS are the module's arrows; tests/architecture_test.py holds the includes
+# to them.
+function(sidestep_module name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  add_library(sidestep_${name} STATIC ${ARG_SOURCES})
+  add_library(sidestep::${name} ALIAS sidestep_${name})
+  set_target_properties(sidestep_${name} PROPERTIES EXPORT_NAME ${name})
+  target_compile_features(sidestep_${name} PUBLIC cxx_std_20)
+  target_include_directories(sidestep_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                                                     $<INSTALL_INTERFACE:include/sidestep>)
+  target_link_libraries(
+    sidestep_${name}
+    PUBLIC ${ARG_DEPENDS}
+    PRIVATE $<BUILD_INTERFACE:sidestep_warnings> ${ARG_PRIVATE_DEPENDS})
+endfunction()
+
+# sidestep_test(<folder>/<name>_test [SOURCES <further file>...] DEPENDS <target>... [SLOW])
+#
+# Builds tests/<folder>/<name>_test.cc; ctest runs each of its cases. SLOW cases carry the label
+# "slow", which `./dev test` leaves out and `./dev test --all` runs.
+function(sidestep_test path)
+  cmake_parse_arguments(ARG "SLOW" "" "SOURCES;DEPENDS" ${ARGN})
+  string(REPLACE "/" "_" target ${path})
+  add_executable(${target} ${PROJECT_SOURCE_DIR}/tests/${path}.cc ${ARG_SOURCES})
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_compile_definitions(${target} PRIVATE SIDESTEP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_link_libraries(${target} PRIVATE ${ARG_DEPENDS} GTest::gtest_main GTest::gmock
+                                          sidestep_warnings)
+  set(properties TIMEOUT 600)
+  if(ARG_SLOW)
+    list(APPEND properties LABELS slow)
+  endif()
+  gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60 DISCOVERY_MODE PRE_TEST
+                       PROPERTIES ${properties})
+endfunction()

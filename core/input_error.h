@@ -1,0 +1,19 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace sidestep {
+
+/// What a person wrote is wrong. The text is one line, `FILE:LINE: KEY: WHY` (parts that do not
+/// apply are left out), so that an editor can jump there. The command exits with 2.
+class InputError : public std::runtime_error {
+ public:
+  InputError(const std::string& file, int line, const std::string& key, const std::string& why)
+      : std::runtime_error(file + ":" + std::to_string(line) + ": " +
+                           (key.empty() ? "" : key + ": ") + why) {}
+  InputError(const std::string& what, const std::string& why)
+      : std::runtime_error(what + ": " + why) {}
+};
+
+}  // namespace sidestep

@@ -1,0 +1,43 @@
+#include "core/pose.h"
+
+#include <stdexcept>
+
+namespace sidestep {
+
+Pose::Pose(const Eigen::Quaterniond& R_AB, const Eigen::Vector3d& p_AB) : R_AB_(R_AB), p_AB_(p_AB) {
+  const double norm = R_AB.norm();
+  if (!(norm > 0) || !R_AB.coeffs().allFinite() || !p_AB.allFinite()) {
+    throw std::invalid_argument("Pose: the rotation must not be zero, every number finite");
+  }
+  R_AB_.coeffs() /= norm;
+}
+
+Pose Pose::Translation(const Eigen::Vector3d& p_AB) {
+  return Pose(Eigen::Quaterniond::Identity(), p_AB);
+}
+
+Pose Pose::FromRollPitchYaw(const Eigen::Vector3d& rpy_rad, const Eigen::Vector3d& p_AB) {
+  return Pose(Eigen::AngleAxisd(rpy_rad.z(), Eigen::Vector3d::UnitZ()) *
+                  Eigen::AngleAxisd(rpy_rad.y(), Eigen::Vector3d::UnitY()) *
+                  Eigen::AngleAxisd(rpy_rad.x(), Eigen::Vector3d::UnitX()),
+              p_AB);
+}
+
+Pose Pose::Inverse() const {
+  const Eigen::Quaterniond R_BA = R_AB_.conjugate();
+  return Pose(R_BA, -(R_BA * p_AB_));
+}
+
+Pose Pose::operator*(const Pose& X_BC) const {
+  return Pose(R_AB_ * X_BC.R_AB_, p_AB_ + R_AB_ * X_BC.p_AB_);
+}
+
+Eigen::Vector3d Pose::operator*(const Eigen::Vector3d& p_BQ) const { return p_AB_ + R_AB_ * p_BQ; }
+
+Eigen::Vector3d Pose::Rotate(const Eigen::Vector3d& v_B) const { return R_AB_ * v_B; }
+
+Eigen::Vector3d Pose::RotateInverse(const Eigen::Vector3d& v_A) const {
+  return R_AB_.conjugate() * v_A;
+}
+
+}  // namespace sidestep

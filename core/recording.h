@@ -1,0 +1,85 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/pose.h"
+#include "core/time.h"
+#include "core/trajectory.h"
+
+namespace sidestep {
+
+/// One control tick of a robot: what it was told and what it did. All vectors have shape n.
+struct ControlSample {
+  EpisodeTime t;
+  Eigen::VectorXd q_command;  ///< rad
+  Eigen::VectorXd v_command;  ///< rad/s
+  Eigen::VectorXd a_command;  ///< rad/s^2
+  Eigen::VectorXd q;          ///< measured, rad
+  Eigen::VectorXd v;          ///< measured, rad/s
+  Eigen::VectorXd torque;     ///< applied by the motors, N m
+};
+
+/// What was true of the world at one moment, judged by geometry and physics.
+struct TruthSample {
+  EpisodeTime t;
+  /// Least distance between the robot and anything it may not touch [m]; negative: penetration.
+  double clearance_m = 0;
+  std::string nearest_robot_part;  ///< the pair that is nearest
+  std::string nearest_object;
+  bool in_contact = false;     ///< touched at any physics step since the previous sample
+  std::string contact_object;  ///< which object, empty without a contact
+  Eigen::Vector3d p_WContact = Eigen::Vector3d::Zero();  ///< [m] where, if in_contact
+  std::vector<Pose> X_WO;  ///< of each moving obstacle, in the order of Recording::obstacles
+};
+
+/// One object as it was predicted in one planning cycle: a box around it and where it would be.
+struct PredictedObject {
+  int id = 0;
+  Eigen::Vector3d half_extents_m = Eigen::Vector3d::Zero();
+  std::vector<EpisodeTime> t;
+  std::vector<Pose> X_WO;  ///< as many as t; O is the centre of the box
+};
+
+/// One planning cycle.
+struct CycleRecord {
+  EpisodeTime t;                     ///< when the world was observed
+  EpisodeTime t_effect;              ///< when its plan took (or would have taken) effect
+  std::string status;                ///< of the planner
+  bool accepted = false;             ///< whether the plan was given to the robot
+  int iterations = 0;                ///< of the optimiser
+  double cost = 0;                   ///< final, of the whole objective
+  double predicted_clearance_m = 0;  ///< least along the plan, in the predicted field
+  EpisodeTime plan_start;            ///< the plan's state k is at plan_start + plan.t_s(k)
+  Trajectory plan;
+  std::vector<PredictedObject> objects;
+};
+
+/// Everything of one episode: enough to draw it and to judge it again without running it. Holds no
+/// wall-clock figure, so that equal runs give equal bytes.
+struct Recording {
+  /// Facts of the run: scenario, robot, planner, knowledge, seed, versions, ... ; all text.
+  std::map<std::string, std::string> header;
+  std::string scenario_yaml;           ///< the scenario as run, overrides applied
+  std::string model_xml;               ///< MJCF of the whole world
+  std::vector<std::string> joints;     ///< n names, as in the MJCF
+  std::vector<std::string> obstacles;  ///< mocap bodies, as in the MJCF
+  Eigen::VectorXd q_start;
+  Eigen::VectorXd q_goal;
+  std::vector<ControlSample> control;  ///< at the control rate
+  std::vector<TruthSample> truth;      ///< at 100 Hz
+  std::vector<CycleRecord> cycles;
+  std::map<std::string, double> metrics;  ///< of this episode; NaN where one does not apply
+};
+
+/// Writes `recording` as HDF5 (layout: docs/trace.md). Equal recordings give equal bytes.
+/// @throws InputError if the file cannot be written.
+void WriteRecording(const Recording& recording, const std::string& path);
+
+/// Reads it back. @throws InputError, naming the file and what is wrong, if the file is missing,
+/// not HDF5, cut off, or not a recording of this version.
+Recording ReadRecording(const std::string& path);
+
+}  // namespace sidestep

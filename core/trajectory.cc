@@ -1,0 +1,48 @@
+#include "core/trajectory.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace sidestep {
+
+void CheckTrajectory(const Trajectory& trajectory) {
+  const Eigen::Index K = trajectory.t_s.size();
+  if (K < 1 || trajectory.q.rows() < 1 || trajectory.q.cols() != K || trajectory.v.cols() != K ||
+      trajectory.v.rows() != trajectory.q.rows()) {
+    throw std::invalid_argument("trajectory: t_s must be K >= 1 long, q and v n x K");
+  }
+  if (!trajectory.t_s.allFinite() || !trajectory.q.allFinite() || !trajectory.v.allFinite()) {
+    throw std::invalid_argument("trajectory: every number must be finite");
+  }
+  for (Eigen::Index k = 1; k < K; ++k) {
+    if (!(trajectory.t_s(k) > trajectory.t_s(k - 1))) {
+      throw std::invalid_argument("trajectory: times must increase strictly");
+    }
+  }
+}
+
+TrajectoryPoint Sample(const Trajectory& trajectory, HorizonOffset offset) {
+  const int n = trajectory.num_joints();
+  const int last = trajectory.num_states() - 1;
+  const double t = offset.seconds();
+  if (t < trajectory.t_s(0) || t >= trajectory.t_s(last)) {
+    const int k = t < trajectory.t_s(0) ? 0 : last;
+    return {trajectory.q.col(k), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
+  }
+  const double* const begin = trajectory.t_s.data();
+  const int k = static_cast<int>(std::upper_bound(begin, begin + last + 1, t) - begin) - 1;
+  const double h = trajectory.t_s(k + 1) - trajectory.t_s(k);
+  const double s = (t - trajectory.t_s(k)) / h;
+  const auto q0 = trajectory.q.col(k), q1 = trajectory.q.col(k + 1);
+  const auto v0 = trajectory.v.col(k), v1 = trajectory.v.col(k + 1);
+  // The Hermite basis, and its first and second derivatives in s.
+  const double s2 = s * s, s3 = s2 * s;
+  TrajectoryPoint point;
+  point.q = (1 - 3 * s2 + 2 * s3) * q0 + h * (s - 2 * s2 + s3) * v0 + (3 * s2 - 2 * s3) * q1 +
+            h * (s3 - s2) * v1;
+  point.v = (6 * s2 - 6 * s) / h * (q0 - q1) + (1 - 4 * s + 3 * s2) * v0 + (3 * s2 - 2 * s) * v1;
+  point.a = (12 * s - 6) / (h * h) * (q0 - q1) + (6 * s - 4) / h * v0 + (6 * s - 2) / h * v1;
+  return point;
+}
+
+}  // namespace sidestep

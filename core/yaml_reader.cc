@@ -1,0 +1,331 @@
+#include "core/yaml_reader.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "core/input_error.h"
+
+namespace sidestep {
+namespace {
+
+// Far above any file a person writes, far below what would make the parser slow.
+constexpr std::uintmax_t kMaxFileBytes = 1 << 20;
+// yaml-cpp recurses once for each level; a hostile file must not exhaust the stack.
+constexpr int kMaxDepth = 64;
+
+std::string ReadSmallTextFile(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) throw InputError(path, "no such file");
+  if (fs::is_directory(status)) throw InputError(path, "is a directory, not a file");
+  if (!fs::is_regular_file(status)) throw InputError(path, "is not a regular file");
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (!error && size > kMaxFileBytes) {
+    throw InputError(path, "is " + std::to_string(size) + " bytes long, must be at most " +
+                               std::to_string(kMaxFileBytes));
+  }
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw InputError(path, "cannot be read");
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+// Refuses what yaml-cpp would recurse into too deeply. Only flow brackets and indentation nest.
+void CheckText(const std::string& text, const std::string& name) {
+  int line = 1, depth = 0;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte == 0 || (byte < 32 && c != '\n' && c != '\t' && c != '\r')) {
+      throw InputError(name, line, "", "is not a text file (byte " + std::to_string(byte) + ")");
+    }
+    if (c == '\n') ++line;
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+    if (depth > kMaxDepth) throw InputError(name, line, "", "is nested too deeply");
+  }
+  std::istringstream lines(text);
+  std::string row;
+  for (line = 1; std::getline(lines, row); ++line) {
+    int markers = 0;
+    for (std::size_t i = 0; i + 1 < row.size(); ++i) {
+      markers += (row[i] == '-' || row[i] == '?') && row[i + 1] == ' ';
+    }
+    const std::size_t indent = std::min(row.find_first_not_of(' '), row.size());
+    if (markers > kMaxDepth || indent > 4 * kMaxDepth) {
+      throw InputError(name, line, "", "is nested too deeply");
+    }
+  }
+}
+
+std::string Describe(const YAML::Node& node) {
+  switch (node.Type()) {
+    case YAML::NodeType::Null:
+      return "empty";
+    case YAML::NodeType::Scalar:
+      return "'" + node.Scalar() + "'";
+    case YAML::NodeType::Sequence:
+      return "a list";
+    case YAML::NodeType::Map:
+      return "a map";
+    default:
+      return "missing";
+  }
+}
+
+}  // namespace
+
+struct YamlReader::Node {
+  YAML::Node yaml;
+  std::string file;
+  std::string path;  // of this map, empty at the top
+  int line = 1;
+  mutable std::set<std::string> known;
+
+  std::string PathOf(const std::string& key) const {
+    if (path.empty()) return key;
+    return key.empty() ? path : path + "." + key;
+  }
+  static int LineOf(const YAML::Node& node, int otherwise) {
+    return node.Mark().line >= 0 ? node.Mark().line + 1 : otherwise;  // marks count from 0
+  }
+  YAML::Node Find(const std::string& key) const {
+    known.insert(key);
+    for (const auto& entry : yaml) {
+      if (entry.first.IsScalar() && entry.first.Scalar() == key) return entry.second;
+    }
+    return YAML::Node(YAML::NodeType::Undefined);
+  }
+  [[noreturn]] void FailAt(const YAML::Node& at, const std::string& key,
+                           const std::string& why) const {
+    throw InputError(file, at.IsDefined() ? LineOf(at, line) : line, PathOf(key), why);
+  }
+  YAML::Node Require(const std::string& key) const {
+    const YAML::Node node = Find(key);
+    if (!node.IsDefined()) throw InputError(file, line, PathOf(key), "is missing");
+    return node;
+  }
+  YAML::Node RequireSequence(const std::string& key) const {
+    const YAML::Node node = Require(key);
+    if (!node.IsSequence()) FailAt(node, key, "must be a list, is " + Describe(node));
+    return node;
+  }
+  double Number(const YAML::Node& node, const std::string& key) const {
+    if (!node.IsScalar()) FailAt(node, key, "must be a number, is " + Describe(node));
+    double value = 0;
+    const std::string& text = node.Scalar();
+    try {
+      value = node.as<double>();
+    } catch (const YAML::Exception&) {
+      FailAt(node, key, "must be a number, is '" + text + "'");
+    }
+    if (!std::isfinite(value)) FailAt(node, key, "must be finite, is " + text);
+    return value;
+  }
+  std::unique_ptr<Node> Child(const YAML::Node& node, const std::string& key) const {
+    if (!node.IsMap()) FailAt(node, key, "must be a map, is " + Describe(node));
+    auto child = std::make_unique<Node>();
+    child->yaml = node;
+    child->file = file;
+    child->path = PathOf(key);
+    child->line = LineOf(node, line);
+    child->CheckKeys();
+    return child;
+  }
+  // yaml-cpp keeps both of two equal keys and answers with the first.
+  void CheckKeys() const {
+    std::set<std::string> seen;
+    for (const auto& entry : yaml) {
+      if (!entry.first.IsScalar()) {
+        throw InputError(file, LineOf(entry.first, line), path, "keys must be plain words");
+      }
+      if (!seen.insert(entry.first.Scalar()).second) {
+        throw InputError(file, LineOf(entry.first, line), PathOf(entry.first.Scalar()),
+                         "is given twice");
+      }
+    }
+  }
+};
+
+YamlReader::YamlReader(std::unique_ptr<Node> node) : node_(std::move(node)) {}
+YamlReader::~YamlReader() = default;
+YamlReader::YamlReader(YamlReader&&) noexcept = default;
+YamlReader& YamlReader::operator=(YamlReader&&) noexcept = default;
+
+YamlReader YamlReader::FromFile(const std::string& path) {
+  return FromText(ReadSmallTextFile(path), path);
+}
+
+YamlReader YamlReader::FromText(const std::string& text, const std::string& name) {
+  CheckText(text, name);
+  auto node = std::make_unique<Node>();
+  node->file = name;
+  try {
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.empty() || documents[0].IsNull()) throw InputError(name, 1, "", "is empty");
+    if (documents.size() > 1) {
+      throw InputError(name, Node::LineOf(documents[1], 1), "", "holds more than one document");
+    }
+    node->yaml = documents[0];
+  } catch (const YAML::Exception& error) {
+    throw InputError(name, error.mark.line + 1, "", "is not valid YAML: " + error.msg);
+  }
+  if (!node->yaml.IsMap()) {
+    throw InputError(name, 1, "", "must be a map of keys, is " + Describe(node->yaml));
+  }
+  node->CheckKeys();
+  return YamlReader(std::move(node));
+}
+
+bool YamlReader::Has(const std::string& key) const { return node_->Find(key).IsDefined(); }
+
+std::string YamlReader::GetString(const std::string& key) const {
+  const YAML::Node node = node_->Require(key);
+  if (!node.IsScalar()) node_->FailAt(node, key, "must be a word, is " + Describe(node));
+  if (node.Scalar().empty()) node_->FailAt(node, key, "must not be empty");
+  return node.Scalar();
+}
+
+bool YamlReader::GetBool(const std::string& key) const {
+  const YAML::Node node = node_->Require(key);
+  if (node.IsScalar() && node.Scalar() == "true") return true;
+  if (node.IsScalar() && node.Scalar() == "false") return false;
+  node_->FailAt(node, key, "must be true or false, is " + Describe(node));
+}
+
+int YamlReader::GetInt(const std::string& key) const {
+  const YAML::Node node = node_->Require(key);
+  const std::string text = node.IsScalar() ? node.Scalar() : "";
+  char* end = nullptr;
+  const long long value = std::strtoll(text.c_str(), &end, 10);
+  if (text.empty() || *end != '\0') {
+    node_->FailAt(node, key, "must be a whole number, is " + Describe(node));
+  }
+  if (value > INT32_MAX || value < INT32_MIN) node_->FailAt(node, key, "is out of range: " + text);
+  return static_cast<int>(value);
+}
+
+double YamlReader::GetDouble(const std::string& key) const {
+  return node_->Number(node_->Require(key), key);
+}
+
+double YamlReader::GetPositive(const std::string& key) const {
+  const double value = GetDouble(key);
+  if (!(value > 0)) Fail(key, "must be > 0, is " + node_->Find(key).Scalar());
+  return value;
+}
+
+double YamlReader::GetNonNegative(const std::string& key) const {
+  const double value = GetDouble(key);
+  if (!(value >= 0)) Fail(key, "must be >= 0, is " + node_->Find(key).Scalar());
+  return value;
+}
+
+std::vector<double> YamlReader::GetDoubles(const std::string& key) const {
+  std::vector<double> values;
+  for (const YAML::Node& item : node_->RequireSequence(key)) {
+    values.push_back(node_->Number(item, key + "[" + std::to_string(values.size()) + "]"));
+  }
+  return values;
+}
+
+Eigen::VectorXd YamlReader::GetVector(const std::string& key, int length) const {
+  const std::vector<double> values = GetDoubles(key);
+  if (static_cast<int>(values.size()) != length) {
+    Fail(key,
+         "must have " + std::to_string(length) + " numbers, has " + std::to_string(values.size()));
+  }
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), length);
+}
+
+Eigen::Vector3d YamlReader::GetVector3(const std::string& key) const { return GetVector(key, 3); }
+
+Eigen::Vector3d YamlReader::GetPositiveVector3(const std::string& key) const {
+  const Eigen::Vector3d value = GetVector3(key);
+  for (int i = 0; i < 3; ++i) {
+    if (!(value(i) > 0)) {
+      const YAML::Node item = node_->Find(key)[i];
+      node_->FailAt(item, key + "[" + std::to_string(i) + "]", "must be > 0, is " + item.Scalar());
+    }
+  }
+  return value;
+}
+
+std::vector<std::string> YamlReader::GetStrings(const std::string& key) const {
+  std::vector<std::string> values;
+  for (const YAML::Node& item : node_->RequireSequence(key)) {
+    if (!item.IsScalar()) {
+      node_->FailAt(item, key + "[" + std::to_string(values.size()) + "]",
+                    "must be a word, is " + Describe(item));
+    }
+    values.push_back(item.Scalar());
+  }
+  return values;
+}
+
+std::string YamlReader::GetChoice(const std::string& key,
+                                  const std::vector<std::string>& choices) const {
+  const std::string value = GetString(key);
+  if (std::find(choices.begin(), choices.end(), value) == choices.end()) {
+    std::string list;
+    for (const std::string& choice : choices) list += (list.empty() ? "" : ", ") + choice;
+    Fail(key, "must be one of " + list + ", is '" + value + "'");
+  }
+  return value;
+}
+
+Pose YamlReader::GetPose(const std::string& key) const {
+  const YamlReader map = GetMap(key);
+  const Eigen::Vector3d p = map.GetVector3("position_m");
+  const Eigen::Vector3d rpy =
+      map.Has("rpy_rad") ? map.GetVector3("rpy_rad") : Eigen::Vector3d(0, 0, 0);
+  map.CheckNoUnknownKeys();
+  return Pose::FromRollPitchYaw(rpy, p);
+}
+
+bool YamlReader::IsScalar(const std::string& key) const { return node_->Find(key).IsScalar(); }
+
+YamlReader YamlReader::GetMap(const std::string& key) const {
+  return YamlReader(node_->Child(node_->Require(key), key));
+}
+
+std::vector<YamlReader> YamlReader::GetMaps(const std::string& key) const {
+  std::vector<YamlReader> maps;
+  for (const YAML::Node& item : node_->RequireSequence(key)) {
+    maps.push_back(YamlReader(node_->Child(item, key + "[" + std::to_string(maps.size()) + "]")));
+  }
+  return maps;
+}
+
+std::vector<std::string> YamlReader::Keys() const {
+  std::vector<std::string> keys;
+  for (const auto& entry : node_->yaml) keys.push_back(entry.first.Scalar());
+  return keys;
+}
+
+void YamlReader::CheckNoUnknownKeys() const {
+  for (const auto& entry : node_->yaml) {
+    const std::string& key = entry.first.Scalar();
+    if (node_->known.count(key) == 0) {
+      std::string list;
+      for (const std::string& name : node_->known) list += (list.empty() ? "" : ", ") + name;
+      throw InputError(node_->file, Node::LineOf(entry.first, node_->line), node_->PathOf(key),
+                       "is not a known key (known here: " + list + ")");
+    }
+  }
+}
+
+void YamlReader::Fail(const std::string& key, const std::string& why) const {
+  node_->FailAt(node_->Find(key), key, why);
+}
+
+}  // namespace sidestep

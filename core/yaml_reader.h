@@ -1,0 +1,66 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/pose.h"
+
+namespace sidestep {
+
+/// A strict view of one map of a YAML file. Every getter names the key it wants; whatever is wrong
+/// becomes an InputError `FILE:LINE: KEY: WHY`. Call CheckNoUnknownKeys() last: a key that nobody
+/// asked for is an error, because a misspelt one would silently take a default.
+///
+/// Keys are reported by their path, e.g. `moving_obstacles[0].motion.linear.speed_m_s`.
+class YamlReader {
+ public:
+  /// Reads a whole file, whose top must be a map.
+  /// @throws InputError if it is missing, a directory, over 1 MiB, not text, or not YAML.
+  static YamlReader FromFile(const std::string& path);
+  /// The same from a text; `name` stands for the file in messages.
+  static YamlReader FromText(const std::string& text, const std::string& name);
+
+  ~YamlReader();
+  YamlReader(YamlReader&&) noexcept;
+  YamlReader& operator=(YamlReader&&) noexcept;
+
+  bool Has(const std::string& key) const;
+
+  std::string GetString(const std::string& key) const;
+  bool GetBool(const std::string& key) const;
+  int GetInt(const std::string& key) const;
+  double GetDouble(const std::string& key) const;  ///< finite
+  double GetPositive(const std::string& key) const;
+  double GetNonNegative(const std::string& key) const;
+  std::vector<double> GetDoubles(const std::string& key) const;  ///< each finite, any length
+  Eigen::VectorXd GetVector(const std::string& key, int length) const;
+  Eigen::Vector3d GetVector3(const std::string& key) const;
+  Eigen::Vector3d GetPositiveVector3(const std::string& key) const;
+  std::vector<std::string> GetStrings(const std::string& key) const;
+  /// Checks that the string is one of `choices`; the message lists them.
+  std::string GetChoice(const std::string& key, const std::vector<std::string>& choices) const;
+  /// A map {position_m: [x, y, z], rpy_rad: [r, p, y]}; rpy_rad may be left out.
+  Pose GetPose(const std::string& key) const;
+
+  /// True if the value of `key` is a scalar (and not a list or a map).
+  bool IsScalar(const std::string& key) const;
+
+  YamlReader GetMap(const std::string& key) const;
+  std::vector<YamlReader> GetMaps(const std::string& key) const;  ///< a list of maps
+  std::vector<std::string> Keys() const;                          ///< in the file's order
+
+  /// @throws InputError at the first key that no getter (nor Has) was asked for.
+  void CheckNoUnknownKeys() const;
+
+  /// Throws the InputError for `key` at its line (or at the map's own line if it is absent).
+  [[noreturn]] void Fail(const std::string& key, const std::string& why) const;
+
+ private:
+  struct Node;
+  explicit YamlReader(std::unique_ptr<Node> node);
+  std::unique_ptr<Node> node_;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "core/recording.h"
+#include "core/time.h"
+#include "core/trajectory.h"
+
+namespace sidestep {
+
+/// A robot that follows trajectories, simulated or real. One thread at a time.
+class RobotInterface {
+ public:
+  virtual ~RobotInterface() = default;
+
+  /// The measured state now.
+  virtual JointState Read() const = 0;
+
+  /// Follows `trajectory` from `start` on; until then, what was submitted before goes on. A start
+  /// in the past is allowed: the robot joins the trajectory where it is now. The robot's own limits
+  /// hold whatever is asked for: what it cannot follow, it follows late.
+  /// @throws std::invalid_argument for a wrong shape or a value that is not finite.
+  virtual void Submit(const Trajectory& trajectory, EpisodeTime start) = 0;
+
+  /// Brakes within its limits and stays there.
+  virtual void Hold() = 0;
+
+  /// The simulator steps to time `t`; hardware waits for it. Never goes back.
+  virtual void AdvanceTo(EpisodeTime t) = 0;
+
+  /// Every control tick since the last call.
+  virtual std::vector<ControlSample> TakeControlLog() = 0;
+};
+
+}  // namespace sidestep

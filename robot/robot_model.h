@@ -1,0 +1,89 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/pose.h"
+
+namespace sidestep {
+
+/// Limits of one joint (rad, rad/s, rad/s^2, rad/s^3, N m). Infinite where nobody published one.
+struct JointLimits {
+  double q_min = 0, q_max = 0;
+  double v_max = 0;
+  double a_max = 0;
+  double jerk_max = 0;
+  double torque_max = 0;
+};
+
+/// One row of a classic (distal) Denavit-Hartenberg table: A_i = Rz(q_i + theta) Tz(d) Tx(a)
+/// Rx(alpha).
+struct DhRow {
+  double a_m = 0, alpha_rad = 0, d_m = 0, theta_rad = 0;
+};
+
+/// A collision sphere, fixed in the frame after DH row `link` (0-based).
+struct CollisionSphere {
+  int link = 0;
+  Eigen::Vector3d p_LS = Eigen::Vector3d::Zero();  ///< [m]
+  double radius_m = 0;
+};
+
+/// Where the spheres are for one q. S spheres, n joints.
+struct SphereCenters {
+  Eigen::Matrix3Xd p_WS;  ///< [m] 3 x S
+  Eigen::MatrixXd Jq;     ///< 3S x n, d p_WS / d q; empty unless asked for
+};
+
+/// A serial arm as data: joints, limits, collision spheres, named configurations. Immutable; safe
+/// from many threads. Frames: W the world, B the base (X_WB is fixed), L_i the frame after DH row
+/// i.
+class RobotModel {
+ public:
+  /// Reads `<models_dir>/<name>/robot.yaml`. @throws InputError FILE:LINE: KEY: WHY.
+  static RobotModel Load(const std::string& models_dir, const std::string& name, const Pose& X_WB);
+
+  const std::string& name() const { return name_; }
+  const Pose& X_WB() const { return X_WB_; }
+  int num_joints() const { return static_cast<int>(limits_.size()); }
+  int num_spheres() const { return static_cast<int>(spheres_.size()); }
+  const std::vector<std::string>& joint_names() const { return joint_names_; }
+  const std::vector<JointLimits>& limits() const { return limits_; }
+  const std::vector<CollisionSphere>& spheres() const { return spheres_; }
+  const Eigen::VectorXd& sphere_radii_m() const { return radii_m_; }  ///< shape S
+  double largest_sphere_radius_m() const { return radii_m_.maxCoeff(); }
+  const std::map<std::string, Eigen::VectorXd>& configurations() const { return configurations_; }
+
+  /// Spheres that obstacle costs and start checks leave out, because robot.yaml says that they
+  /// overlap what the robot is mounted on. 0-based, ascending.
+  const std::vector<int>& mount_spheres() const { return mount_spheres_; }
+  /// Links (names of MJCF bodies) that may touch what the robot is mounted on.
+  const std::vector<std::string>& mount_links() const { return mount_links_; }
+  /// Joint impedance gains of the simulated controller, shape n: N m/rad and N m s/rad.
+  const Eigen::VectorXd& stiffness() const { return stiffness_; }
+  const Eigen::VectorXd& damping() const { return damping_; }
+
+  /// X_WL of the frame after each DH row, for q of shape n.
+  std::vector<Pose> ComputeLinkPoses(const Eigen::VectorXd& q) const;
+
+  /// Centres of all spheres and, if asked, their Jacobian. No allocation beyond the result.
+  /// @throws std::invalid_argument for a q of the wrong shape.
+  SphereCenters ComputeSphereCenters(const Eigen::VectorXd& q, bool with_jacobian) const;
+
+ private:
+  std::string name_;
+  Pose X_WB_;
+  std::vector<std::string> joint_names_;
+  std::vector<DhRow> dh_;
+  std::vector<JointLimits> limits_;
+  std::vector<CollisionSphere> spheres_;
+  Eigen::VectorXd radii_m_;
+  std::map<std::string, Eigen::VectorXd> configurations_;
+  std::vector<int> mount_spheres_;
+  std::vector<std::string> mount_links_;
+  Eigen::VectorXd stiffness_, damping_;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "core/observations.h"
+#include "core/recording.h"
+#include "core/time.h"
+
+namespace sidestep {
+
+/// What a simulator knows and a real world does not tell. Absent on hardware.
+class WorldTruth {
+ public:
+  virtual ~WorldTruth() = default;
+
+  /// Every moving obstacle as it is, was or will be at `t`, in the order of the scenario.
+  virtual std::vector<ObjectObservation> ObstaclesAt(EpisodeTime t) const = 0;
+
+  /// Every sample (100 Hz) since the last call. Contacts of all physics steps are in them.
+  virtual std::vector<TruthSample> TakeSamples() = 0;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/time.h"
+
+namespace sidestep {
+
+/// What a field says of one point.
+struct DistanceSample {
+  double distance_m = 0;                                 ///< signed; negative inside an obstacle
+  Eigen::Vector3d gradient_W = Eigen::Vector3d::Zero();  ///< d distance / d p_WQ
+  bool in_grid = true;                                   ///< false: outside what was mapped
+};
+
+/// The same of S points at once.
+struct DistanceSamples {
+  Eigen::VectorXd distance_m;   ///< shape S
+  Eigen::Matrix3Xd gradient_W;  ///< 3 x S
+  int num_outside = 0;          ///< how many points lay outside what was mapped
+};
+
+/// The signed distance phi(p, t) from a point to the nearest obstacle, as believed for time t.
+/// An immutable snapshot: safe from many threads, and never throws.
+class DistanceField {
+ public:
+  virtual ~DistanceField() = default;
+
+  /// Samples the field at point Q and time `t`.
+  ///
+  /// The value is trilinear between cell centres, so it is continuous, and its gradient is that of
+  /// the interpolant: exact, but it jumps at cell faces. Outside the mapped box the answer is
+  /// {max_distance_m(), 0, in_grid = false}: unknown space does not push.
+  ///
+  /// @param p_WQ [m] position of Q in the world frame W, finite.
+  /// @param t    time since the episode began, never an offset from "now".
+  virtual DistanceSample Sample(const Eigen::Vector3d& p_WQ, EpisodeTime t) const = 0;
+
+  /// Samples S points at the same time; sizes `samples` as needed. Equal to S single calls.
+  virtual void SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime t,
+                          DistanceSamples& samples) const = 0;
+
+  /// No answer is above this [m]; where an answer equals it, its gradient is zero.
+  virtual double max_distance_m() const = 0;
+};
+
+}  // namespace sidestep

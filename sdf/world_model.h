@@ -1,0 +1,69 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/grid.h"
+#include "core/observations.h"
+#include "core/recording.h"
+#include "core/time.h"
+#include "sdf/distance_field.h"
+
+namespace sidestep {
+
+/// What the planner is told about the moving world.
+enum class Knowledge {
+  kStatic,            ///< the world as first seen, never updated
+  kExecuteAndUpdate,  ///< the world as it is at each re-plan, frozen
+  kPrediction,        ///< tracked from occupancy and extrapolated
+  kFullKnowledge,     ///< the true future: the upper bound
+};
+/// "static", "execute_and_update", "prediction", "full_knowledge".
+std::string ToString(Knowledge knowledge);
+/// @throws std::invalid_argument for another word.
+Knowledge KnowledgeFromString(const std::string& word);
+inline constexpr Knowledge kAllKnowledge[] = {Knowledge::kStatic, Knowledge::kExecuteAndUpdate,
+                                              Knowledge::kPrediction, Knowledge::kFullKnowledge};
+
+/// Where every moving obstacle truly is at a time; only full_knowledge asks.
+using TrueObstacles = std::function<std::vector<ObjectObservation>(EpisodeTime)>;
+
+struct WorldModelOptions {
+  Knowledge knowledge = Knowledge::kPrediction;
+  std::string predictor = "two_frame";  ///< a name of sdf/prediction/registry.h
+  GridSpec grid;                        ///< in W
+  double max_distance_m = 0;            ///< fields are clamped here: safety margin + largest sphere
+  TrueObstacles true_obstacles;         ///< must be set for full_knowledge
+};
+
+/// Seconds of wall clock that the stages of one planning cycle took, for the report only.
+struct WorldModelTimes {
+  double map_s = 0, segment_s = 0, track_s = 0, predict_s = 0;
+};
+
+/// Turns scans into one DistanceField for each planning cycle, under one kind of knowledge.
+class WorldModel {
+ public:
+  virtual ~WorldModel() = default;
+
+  /// Takes in a scan, in the order of capture.
+  virtual void Observe(const Scan& scan) = 0;
+
+  /// The belief after the latest scan, as an immutable snapshot. Needs at least one scan.
+  virtual std::shared_ptr<const DistanceField> MakeField() = 0;
+
+  /// The objects in the latest field and where they are believed to be at `times`, for the record.
+  virtual std::vector<PredictedObject> DescribeObjects(
+      const std::vector<EpisodeTime>& times) const = 0;
+
+  /// What the stages have cost since the last call.
+  virtual WorldModelTimes TakeTimes() = 0;
+};
+
+/// @throws std::invalid_argument for an unknown predictor, a bad grid, a margin <= 0, or
+/// full_knowledge without true_obstacles.
+std::unique_ptr<WorldModel> MakeWorldModel(const WorldModelOptions& options);
+
+}  // namespace sidestep
