@@ -4,6 +4,8 @@ include_guard()
 add_library(sidestep_warnings INTERFACE)
 target_compile_options(sidestep_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror
                                                    -ffp-contract=off)
+# GCC 12 warns of its own std::string concatenation (its bug 105651).
+target_compile_options(sidestep_warnings INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 
 # sidestep_module(<folder> SOURCES <file>... [DEPENDS <public target>...]
 #                 [PRIVATE_DEPENDS <target>...])

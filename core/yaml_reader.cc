@@ -324,6 +324,11 @@ void YamlReader::CheckNoUnknownKeys() const {
   }
 }
 
+int YamlReader::Line(const std::string& key) const {
+  const YAML::Node node = node_->Find(key);
+  return node.IsDefined() ? Node::LineOf(node, node_->line) : node_->line;
+}
+
 void YamlReader::Fail(const std::string& key, const std::string& why) const {
   node_->FailAt(node_->Find(key), key, why);
 }

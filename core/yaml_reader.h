@@ -54,6 +54,9 @@ class YamlReader {
   /// @throws InputError at the first key that no getter (nor Has) was asked for.
   void CheckNoUnknownKeys() const;
 
+  /// The line of the value of `key` (of the map itself if it is absent), counted from 1.
+  int Line(const std::string& key) const;
+
   /// Throws the InputError for `key` at its line (or at the map's own line if it is absent).
   [[noreturn]] void Fail(const std::string& key, const std::string& why) const;
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <variant>
 #include <vector>
@@ -76,6 +77,10 @@ struct Scenario {
   std::string sensor;
   double sensor_rate_hz = 0;
   std::uint64_t seed = 1;
+
+  /// Lines of the values that only other modules can judge (names of robots, configurations,
+  /// planners, ...), by their path in the file, so that they can complain as the reader does.
+  std::map<std::string, int> lines;
 };
 
 /// Where an obstacle is at `t`. Before 0 it rests at its start.

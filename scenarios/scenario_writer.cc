@@ -1,0 +1,142 @@
+#include <charconv>
+#include <cmath>
+
+#include "scenarios/scenario.h"
+
+namespace sidestep {
+namespace {
+
+// The shortest text that reads back to the same double.
+std::string Number(double value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value);
+  return std::string(text, end.ptr);
+}
+
+std::string List(const Eigen::VectorXd& values) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : ", ") + Number(value);
+  return "[" + text + "]";
+}
+
+// Any text as a double-quoted YAML scalar.
+std::string Quoted(const std::string& text) {
+  std::string quoted;
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c == '\n' ? std::string("\\n") : std::string(1, c);
+  }
+  return "\"" + quoted + "\"";
+}
+
+Eigen::Vector3d RollPitchYaw(const Pose& pose) {
+  const Eigen::Matrix3d R = pose.rotation().toRotationMatrix();
+  return {std::atan2(R(2, 1), R(2, 2)), std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0))),
+          std::atan2(R(1, 0), R(0, 0))};
+}
+
+std::string PoseKeys(const char* position_key, const Pose& pose) {
+  std::string text = std::string(position_key) + ": " + List(pose.translation());
+  const Eigen::Vector3d rpy = RollPitchYaw(pose);
+  if (!rpy.isZero(0)) text += ", rpy_rad: " + List(rpy);
+  return text;
+}
+
+std::string ShapeText(const Shape& shape) {
+  std::string sizes;
+  if (const Box* box = std::get_if<Box>(&shape)) sizes = "size_m: " + List(box->size_m);
+  if (const Sphere* sphere = std::get_if<Sphere>(&shape)) {
+    sizes = "radius_m: " + Number(sphere->radius_m);
+  }
+  if (const Capsule* capsule = std::get_if<Capsule>(&shape)) {
+    sizes = "radius_m: " + Number(capsule->radius_m) + ", length_m: " + Number(capsule->length_m);
+  }
+  if (const Cylinder* cylinder = std::get_if<Cylinder>(&shape)) {
+    sizes = "radius_m: " + Number(cylinder->radius_m) + ", length_m: " + Number(cylinder->length_m);
+  }
+  if (const Ellipsoid* ellipsoid = std::get_if<Ellipsoid>(&shape)) {
+    sizes = "semi_axes_m: " + List(ellipsoid->semi_axes_m);
+  }
+  return "{" + ShapeName(shape) + ": {" + sizes + "}}";
+}
+
+std::string StopText(double stop_at_s) {
+  return std::isfinite(stop_at_s) ? ", stop_at_s: " + Number(stop_at_s) : "";
+}
+
+std::string MotionText(const Motion& motion) {
+  if (const LinearMotion* linear = std::get_if<LinearMotion>(&motion)) {
+    return "{linear: {start_m: " + List(linear->start_m) +
+           ", direction: " + List(linear->direction) + ", speed_m_s: " + Number(linear->speed_m_s) +
+           StopText(linear->stop_at_s) + "}}";
+  }
+  const WaypointMotion& waypoints = std::get<WaypointMotion>(motion);
+  std::string points;
+  for (const Eigen::Vector3d& point : waypoints.points_m) {
+    points += (points.empty() ? "" : ", ") + ("{position_m: " + List(point) + "}");
+  }
+  return "{waypoints: {points: [" + points + "], speed_m_s: " + Number(waypoints.speed_m_s) +
+         StopText(waypoints.stop_at_s) + "}}";
+}
+
+const char* Word(bool value) { return value ? "true" : "false"; }
+
+}  // namespace
+
+std::string ToYaml(const Scenario& scenario) {
+  const auto configuration = [](const std::string& name, const Eigen::VectorXd& q) {
+    return name.empty() ? List(q) : Quoted(name);
+  };
+  const GridSpec& grid = scenario.grid;
+  std::string text;
+  const auto line = [&](const std::string& row) { text += row + "\n"; };
+  line("name: " + Quoted(scenario.name));
+  line("description: " + Quoted(scenario.description));
+  line("robot:");
+  line("  model: " + Quoted(scenario.robot));
+  line("  base: {" + PoseKeys("position_m", scenario.X_WB) + "}");
+  if (!scenario.mount.empty()) line("  mount: " + scenario.mount);
+  line("task:");
+  line("  start: " + configuration(scenario.start_name, scenario.q_start));
+  line("  goal: " + configuration(scenario.goal_name, scenario.q_goal));
+  line("horizon: {duration_s: " + Number(scenario.horizon_s) +
+       ", step_s: " + Number(scenario.step_s) + "}");
+  line("workspace: {first_center_m: " + List(grid.first_center_m) +
+       ", cell_m: " + Number(grid.cell_m) + ", cells: [" + std::to_string(grid.size[0]) + ", " +
+       std::to_string(grid.size[1]) + ", " + std::to_string(grid.size[2]) + "]}");
+  line("floor_m: " + Number(scenario.floor_m));
+  if (!scenario.static_boxes.empty()) line("static_boxes:");
+  for (const StaticBox& box : scenario.static_boxes) {
+    line("  - {name: " + box.name + ", " + PoseKeys("center_m", box.X_WO) +
+         ", size_m: " + List(box.size_m) + "}");
+  }
+  if (!scenario.moving_obstacles.empty()) line("moving_obstacles:");
+  for (const MovingObstacle& obstacle : scenario.moving_obstacles) {
+    line("  - name: " + obstacle.name);
+    line("    shape: " + ShapeText(obstacle.shape));
+    if (!obstacle.rpy_rad.isZero(0)) line("    rpy_rad: " + List(obstacle.rpy_rad));
+    if (!obstacle.appearance.empty()) line("    appearance: " + Quoted(obstacle.appearance));
+    line("    motion: " + MotionText(obstacle.motion));
+  }
+  line("planner:");
+  line("  name: " + Quoted(scenario.planner));
+  line("  epsilon_m: " + Number(scenario.epsilon_m));
+  line("  sigma_obs: " + Number(scenario.sigma_obs));
+  line("  n_int: " + std::to_string(scenario.num_interpolated));
+  line("  qc: " + Number(scenario.qc));
+  line("  limit_scale: " + Number(scenario.limit_scale));
+  line("  max_iterations: " + std::to_string(scenario.max_iterations));
+  line(std::string("  position_limits: ") + Word(scenario.position_limits));
+  line(std::string("  velocity_limits: ") + Word(scenario.velocity_limits));
+  line(std::string("  acceleration_limits: ") + Word(scenario.acceleration_limits));
+  line("knowledge: " + Quoted(scenario.knowledge));
+  line("predictor: " + Quoted(scenario.predictor));
+  line("replanning: {rate_hz: " + Number(scenario.replan_rate_hz) +
+       ", latency_s: " + Number(scenario.latency_s) + "}");
+  line("sensor: {name: " + Quoted(scenario.sensor) +
+       ", rate_hz: " + Number(scenario.sensor_rate_hz) + "}");
+  line("seed: " + std::to_string(scenario.seed));
+  return text;
+}
+
+}  // namespace sidestep
