@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -22,6 +23,8 @@ struct ControlSample {
   Eigen::VectorXd torque;     ///< applied by the motors, N m
 };
 
+inline constexpr double kNoContact = std::numeric_limits<double>::quiet_NaN();
+
 /// What was true of the world at one moment, judged by geometry and physics.
 struct TruthSample {
   EpisodeTime t;
@@ -29,8 +32,9 @@ struct TruthSample {
   double clearance_m = 0;
   std::string nearest_robot_part;  ///< the pair that is nearest
   std::string nearest_object;
-  bool in_contact = false;     ///< touched at any physics step since the previous sample
-  std::string contact_object;  ///< which object, empty without a contact
+  bool in_contact = false;        ///< touched at any physics step since the previous sample
+  double contact_s = kNoContact;  ///< episode time of the first of those steps; NaN: none
+  std::string contact_object;     ///< which object, empty without a contact
   Eigen::Vector3d p_WContact = Eigen::Vector3d::Zero();  ///< [m] where, if in_contact
   std::vector<Pose> X_WO;  ///< of each moving obstacle, in the order of Recording::obstacles
 };
@@ -68,6 +72,7 @@ struct Recording {
   std::vector<std::string> obstacles;  ///< mocap bodies, as in the MJCF
   Eigen::VectorXd q_start;
   Eigen::VectorXd q_goal;
+  Eigen::VectorXd v_max;               ///< the robot's velocity limits, rad/s
   std::vector<ControlSample> control;  ///< at the control rate
   std::vector<TruthSample> truth;      ///< at 100 Hz
   std::vector<CycleRecord> cycles;
