@@ -9,7 +9,7 @@
 
 namespace sidestep {
 
-/// Limits of one joint (rad, rad/s, rad/s^2, rad/s^3, N m). Infinite where nobody published one.
+/// Limits of one joint (rad, rad/s, rad/s^2, rad/s^3, N m). Infinite where robot.yaml gives none.
 struct JointLimits {
   double q_min = 0, q_max = 0;
   double v_max = 0;
@@ -42,18 +42,29 @@ struct SphereCenters {
 /// i.
 class RobotModel {
  public:
-  /// Reads `<models_dir>/<name>/robot.yaml`. @throws InputError FILE:LINE: KEY: WHY.
+  /// Reads `<models_dir>/<name>/robot.yaml` (its keys: docs/robots.md).
+  /// @throws InputError FILE:LINE: KEY: WHY; for a name without such a file, the known names.
   static RobotModel Load(const std::string& models_dir, const std::string& name, const Pose& X_WB);
+  /// The same from a file of any name.
+  static RobotModel FromFile(const std::string& path, const Pose& X_WB);
+
+  /// The robots there are: the folders of `models_dir` that hold a robot.yaml, sorted.
+  static std::vector<std::string> ListNames(const std::string& models_dir);
+
+  /// What ComputeSphereCenters has room for; longer arms are refused.
+  static constexpr int kMaxJoints = 16;
 
   const std::string& name() const { return name_; }
   const Pose& X_WB() const { return X_WB_; }
   int num_joints() const { return static_cast<int>(limits_.size()); }
   int num_spheres() const { return static_cast<int>(spheres_.size()); }
   const std::vector<std::string>& joint_names() const { return joint_names_; }
+  const std::vector<DhRow>& dh() const { return dh_; }
   const std::vector<JointLimits>& limits() const { return limits_; }
   const std::vector<CollisionSphere>& spheres() const { return spheres_; }
   const Eigen::VectorXd& sphere_radii_m() const { return radii_m_; }  ///< shape S
   double largest_sphere_radius_m() const { return radii_m_.maxCoeff(); }
+  /// Named joint positions, each within the position limits.
   const std::map<std::string, Eigen::VectorXd>& configurations() const { return configurations_; }
 
   /// Spheres that obstacle costs and start checks leave out, because robot.yaml says that they
@@ -66,13 +77,19 @@ class RobotModel {
   const Eigen::VectorXd& damping() const { return damping_; }
 
   /// X_WL of the frame after each DH row, for q of shape n.
+  /// @throws std::invalid_argument for a q of the wrong shape.
   std::vector<Pose> ComputeLinkPoses(const Eigen::VectorXd& q) const;
 
-  /// Centres of all spheres and, if asked, their Jacobian. No allocation beyond the result.
+  /// Centres of all spheres and, if asked, their Jacobian: column j of sphere s is
+  /// z_j x (p_s - o_j) with the axis z_j and origin o_j of joint j, zero for joints beyond the
+  /// sphere's link. No allocation beyond the result.
   /// @throws std::invalid_argument for a q of the wrong shape.
   SphereCenters ComputeSphereCenters(const Eigen::VectorXd& q, bool with_jacobian) const;
 
  private:
+  struct Chain;  // where every joint axis and link frame is for one q
+  Chain ComputeChain(const Eigen::VectorXd& q) const;
+
   std::string name_;
   Pose X_WB_;
   std::vector<std::string> joint_names_;
