@@ -1,0 +1,221 @@
+#include "bench/episode.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <deque>
+#include <iterator>
+
+#include "bench/metrics/motion_metrics.h"
+#include "bench/metrics/registry.h"
+#include "core/cpu_time.h"
+#include "planner/registry.h"
+#include "planner/replanner.h"
+#include "sdf/world_model.h"
+
+namespace sidestep {
+namespace {
+
+constexpr double kAfterGoal = 0.5;     // s of episode after the goal is reached
+constexpr double kHorizons = 2;        // an episode lasts at most this many horizons
+constexpr double kTimeEpsilon = 1e-9;  // s; far below a physics step, far above rounding
+
+WorldModelOptions MakeWorldModelOptions(const Scenario& scenario, const RobotModel& robot,
+                                        const EpisodeWorld& world) {
+  WorldModelOptions options;
+  options.knowledge = KnowledgeFromString(scenario.knowledge);
+  options.predictor = scenario.predictor;
+  options.grid = scenario.grid;
+  options.max_distance_m = scenario.epsilon_m + robot.largest_sphere_radius_m();
+  if (world.truth != nullptr) {
+    options.true_obstacles = [truth = world.truth](EpisodeTime t) { return truth->ObstaclesAt(t); };
+  }
+  return options;
+}
+
+PlannerSettings MakePlannerSettings(const Scenario& scenario) {
+  PlannerSettings settings;
+  settings.epsilon_m = scenario.epsilon_m;
+  settings.sigma_obs = scenario.sigma_obs;
+  settings.num_interpolated = scenario.num_interpolated;
+  settings.qc = scenario.qc;
+  settings.limit_scale = scenario.limit_scale;
+  settings.max_iterations = scenario.max_iterations;
+  settings.position_limits = scenario.position_limits;
+  settings.velocity_limits = scenario.velocity_limits;
+  settings.acceleration_limits = scenario.acceleration_limits;
+  return settings;
+}
+
+Recording BeginRecording(const Scenario& scenario, const RobotModel& robot,
+                         const EpisodeWorld& world) {
+  Recording recording;
+  recording.header = {{"scenario", scenario.name},       {"robot", robot.name()},
+                      {"planner", scenario.planner},     {"knowledge", scenario.knowledge},
+                      {"predictor", scenario.predictor}, {"seed", std::to_string(scenario.seed)}};
+  recording.scenario_yaml = ToYaml(scenario);
+  recording.model_xml = world.model_xml;
+  recording.joints = world.joints;
+  recording.obstacles = world.obstacles;
+  recording.q_start = scenario.q_start;
+  recording.q_goal = scenario.q_goal;
+  recording.v_max.resize(robot.num_joints());
+  for (int i = 0; i < robot.num_joints(); ++i) {
+    recording.v_max(i) = robot.limits()[static_cast<std::size_t>(i)].v_max;
+  }
+  return recording;
+}
+
+// The loop's state: what has happened so far and what is due.
+class Loop {
+ public:
+  Loop(const Scenario& scenario, const RobotModel& robot, EpisodeWorld& world)
+      : scenario_(scenario),
+        world_(world),
+        planner_(MakePlanner(scenario.planner, robot, MakePlannerSettings(scenario))),
+        model_(MakeWorldModel(MakeWorldModelOptions(scenario, robot, world))),
+        replanner_(*planner_, *model_, {scenario.horizon_s, scenario.step_s, scenario.q_goal}),
+        end_s_(kHorizons * scenario.horizon_s) {
+    result_.recording = BeginRecording(scenario, robot, world);
+  }
+
+  EpisodeResult Run() {
+    while (true) {
+      // Of things due at the same time, plans take effect first, then scans, then a new cycle.
+      const double next_s = std::min({NextEffect(), NextScan(), next_cycle_s_, end_s_});
+      Advance(next_s);
+      if (next_s >= end_s_) break;
+      if (NextEffect() <= next_s) {
+        world_.robot->Submit(pending_.front().plan.trajectory, pending_.front().plan.start);
+        pending_.pop_front();
+      } else if (NextScan() <= next_s) {
+        Sense();
+      } else {
+        Replan(next_s);
+      }
+    }
+    return Finish();
+  }
+
+ private:
+  struct Pending {
+    TimedPlan plan;
+    double effect_s;
+  };
+
+  double NextEffect() const { return pending_.empty() ? end_s_ + 1 : pending_.front().effect_s; }
+  double NextScan() const { return world_.sensor->NextCapture().seconds(); }
+
+  void Advance(double t_s) {
+    world_.robot->AdvanceTo(EpisodeTime(t_s));
+    Recording& recording = result_.recording;
+    for (ControlSample& tick : world_.robot->TakeControlLog()) {
+      if (!reached_ && AtGoal(tick.q, tick.v, recording.q_goal)) {
+        reached_ = true;
+        end_s_ = std::min(end_s_, tick.t.seconds() + kAfterGoal);
+      }
+      if (tick.t.seconds() <= end_s_ + kTimeEpsilon) recording.control.push_back(std::move(tick));
+    }
+    if (world_.truth == nullptr) return;
+    for (TruthSample& sample : world_.truth->TakeSamples()) {
+      if (sample.t.seconds() <= end_s_ + kTimeEpsilon) recording.truth.push_back(std::move(sample));
+    }
+  }
+
+  void Sense() {
+    const double begin = ThreadCpuSeconds();
+    const std::optional<Scan> scan = world_.sensor->Read();
+    sense_s_ += ThreadCpuSeconds() - begin;
+    if (scan) {
+      model_->Observe(*scan);
+      has_scan_ = true;
+    }
+  }
+
+  void Replan(double t_s) {
+    const double latency_s = scenario_.latency_s;
+    // The first multiple of the period that is past this cycle's own time.
+    next_cycle_s_ = ++cycle_index_ / scenario_.replan_rate_hz;
+    while (next_cycle_s_ < t_s + latency_s - kTimeEpsilon) {
+      next_cycle_s_ = ++cycle_index_ / scenario_.replan_rate_hz;
+    }
+    if (!has_scan_) return;  // nothing is known yet
+    Replanner::Cycle cycle =
+        replanner_.Run(EpisodeTime(t_s), world_.robot->Read(), HorizonOffset(latency_s));
+    if (cycle.plan) pending_.push_back({*cycle.plan, t_s + latency_s});
+    result_.recording.cycles.push_back(std::move(cycle.record));
+    KeepTimes(cycle);
+  }
+
+  void KeepTimes(const Replanner::Cycle& cycle) {
+    const WorldModelTimes map = model_->TakeTimes();
+    const std::pair<const char*, double> stages[] = {
+        {"sense", sense_s_},    {"map", map.map_s},         {"segment", map.segment_s},
+        {"track", map.track_s}, {"predict", map.predict_s}, {"optimise", cycle.optimise_s},
+    };
+    double sum = 0;
+    for (const auto& [name, seconds] : stages) {
+      result_.times[name].push_back(seconds);
+      sum += seconds;
+    }
+    result_.times["cycle"].push_back(sum);
+    sense_s_ = 0;
+  }
+
+  EpisodeResult Finish() {
+    Recording& recording = result_.recording;
+    for (const Metric& metric : Metrics()) {
+      recording.metrics[metric.name] = metric.compute(recording);
+    }
+    const bool touched = !std::isnan(recording.metrics.at("first_contact_s"));
+    const bool planned = recording.metrics.at("plans_accepted") > 0;
+    result_.outcome = touched    ? Outcome::kCollision
+                      : reached_ ? Outcome::kGoal
+                      : planned  ? Outcome::kTimeout
+                                 : Outcome::kPlannerFailed;
+    recording.header["outcome"] = ToString(result_.outcome);
+    return std::move(result_);
+  }
+
+  const Scenario& scenario_;
+  EpisodeWorld& world_;
+  std::unique_ptr<Planner> planner_;
+  std::unique_ptr<WorldModel> model_;
+  Replanner replanner_;
+
+  std::deque<Pending> pending_;
+  int cycle_index_ = 0;
+  double next_cycle_s_ = 0;
+  double end_s_;
+  double sense_s_ = 0;
+  bool has_scan_ = false;
+  bool reached_ = false;
+  EpisodeResult result_;
+};
+
+}  // namespace
+
+std::string ToString(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::kGoal:
+      return "goal";
+    case Outcome::kCollision:
+      return "collision";
+    case Outcome::kTimeout:
+      return "timeout";
+    case Outcome::kPlannerFailed:
+      return "planner_failed";
+  }
+  return "";
+}
+
+EpisodeResult RunEpisode(const Scenario& scenario, const RobotModel& robot,
+                         const WorldFactory& make_world) {
+  const auto begin = std::chrono::steady_clock::now();
+  EpisodeWorld world = make_world(scenario, robot);
+  EpisodeResult result = Loop(scenario, robot, world).Run();
+  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return result;
+}
+
+}  // namespace sidestep

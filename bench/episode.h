@@ -1,0 +1,59 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/recording.h"
+#include "robot/robot_interface.h"
+#include "robot/robot_model.h"
+#include "robot/sensor.h"
+#include "robot/world_truth.h"
+#include "scenarios/scenario.h"
+
+namespace sidestep {
+
+/// A robot in its world, for one episode. The pointers live as long as `owner`.
+struct EpisodeWorld {
+  std::shared_ptr<void> owner;
+  RobotInterface* robot = nullptr;
+  Sensor* sensor = nullptr;
+  WorldTruth* truth = nullptr;  ///< null on hardware: then nothing is judged by geometry
+  std::string model_xml;        ///< to draw it
+  std::vector<std::string> joints, obstacles;
+};
+
+/// Makes the world of a scenario; simulation and hardware each have one.
+using WorldFactory = std::function<EpisodeWorld(const Scenario&, const RobotModel&)>;
+
+enum class Outcome {
+  kGoal,          ///< reached the goal and touched nothing
+  kCollision,     ///< touched something, whatever came after
+  kTimeout,       ///< neither, within twice the horizon
+  kPlannerFailed  ///< neither, and the robot was never given a plan
+};
+std::string ToString(Outcome outcome);
+
+/// CPU seconds by stage ("sense", "map", "segment", "track", "predict", "optimise", "cycle"), one
+/// entry a planning cycle. What sensing and mapping cost since the cycle before is counted in.
+using StageTimes = std::map<std::string, std::vector<double>>;
+
+struct EpisodeResult {
+  Outcome outcome = Outcome::kTimeout;
+  Recording recording;  ///< its metrics are filled
+  StageTimes times;
+  double wall_s = 0;  ///< of the whole episode
+};
+
+/// Runs one closed loop: sense, predict, re-plan, splice, move, until 0.5 s after the goal is
+/// reached or twice the horizon. Everything but `times` and `wall_s` is a function of the scenario
+/// and the build. A planning cycle begins at multiples of 1 / replan_rate and takes
+/// scenario.latency_s of episode time; the next one begins at the first multiple after that.
+/// @param scenario with its task resolved (bench/resolve.h).
+/// @throws std::invalid_argument for words of the scenario that no module knows.
+EpisodeResult RunEpisode(const Scenario& scenario, const RobotModel& robot,
+                         const WorldFactory& make_world);
+
+}  // namespace sidestep

@@ -1,0 +1,89 @@
+#include "bench/metrics/motion_metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "planner/gp_trajectory.h"
+
+namespace sidestep {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kGpStep = 0.1;  // s, the paper's
+
+}  // namespace
+
+bool AtGoal(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const Eigen::VectorXd& q_goal) {
+  return (q - q_goal).cwiseAbs().maxCoeff() <= kGoalTolerance &&
+         v.cwiseAbs().maxCoeff() <= kGoalSpeed;
+}
+
+double TimeToGoal(const Recording& recording) {
+  for (const ControlSample& tick : recording.control) {
+    if (AtGoal(tick.q, tick.v, recording.q_goal)) return tick.t.seconds();
+  }
+  return kNaN;
+}
+
+double GoalError(const Recording& recording) {
+  if (recording.control.empty()) return kNaN;
+  return (recording.control.back().q - recording.q_goal).cwiseAbs().maxCoeff();
+}
+
+double GpCostOfMotion(const Recording& recording) {
+  const auto& control = recording.control;
+  if (control.empty()) return kNaN;
+  std::vector<std::size_t> picks;
+  double next = control.front().t.seconds();
+  for (std::size_t i = 0; i < control.size(); ++i) {
+    if (control[i].t.seconds() >= next - 1e-9) {
+      picks.push_back(i);
+      next += kGpStep;
+    }
+  }
+  if (picks.size() < 2) return kNaN;
+  const auto K = static_cast<Eigen::Index>(picks.size());
+  Trajectory motion;
+  motion.t_s = Eigen::VectorXd::LinSpaced(K, 0, kGpStep * static_cast<double>(K - 1));
+  motion.q.resize(recording.q_goal.size(), K);
+  motion.v.resize(recording.q_goal.size(), K);
+  for (Eigen::Index k = 0; k < K; ++k) {
+    motion.q.col(k) = control[picks[static_cast<std::size_t>(k)]].q;
+    motion.v.col(k) = control[picks[static_cast<std::size_t>(k)]].v;
+  }
+  return ComputeGpCost(motion, /*qc=*/1.0);
+}
+
+double JerkRms(const Recording& recording) {
+  const double goal_s = TimeToGoal(recording);
+  double sum = 0, count = 0;
+  for (std::size_t i = 1; i < recording.control.size(); ++i) {
+    const ControlSample& before = recording.control[i - 1];
+    const ControlSample& tick = recording.control[i];
+    if (tick.t.seconds() > goal_s) break;  // never true without a goal time (NaN)
+    const double dt = (tick.t - before.t).seconds();
+    sum += ((tick.a_command - before.a_command) / dt).squaredNorm();
+    count += static_cast<double>(tick.a_command.size());
+  }
+  return count > 0 ? std::sqrt(sum / count) : kNaN;
+}
+
+double TrackingError(const Recording& recording) {
+  double worst = recording.control.empty() ? kNaN : 0;
+  for (const ControlSample& tick : recording.control) {
+    worst = std::max(worst, (tick.q_command - tick.q).cwiseAbs().maxCoeff());
+  }
+  return worst;
+}
+
+double VelocityUse(const Recording& recording) {
+  if (recording.v_max.size() == 0 || recording.control.empty()) return kNaN;
+  double worst = 0;
+  for (const ControlSample& tick : recording.control) {
+    worst = std::max(worst, tick.v_command.cwiseAbs().cwiseQuotient(recording.v_max).maxCoeff());
+  }
+  return worst;
+}
+
+}  // namespace sidestep

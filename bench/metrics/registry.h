@@ -1,0 +1,22 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "core/recording.h"
+
+namespace sidestep {
+
+/// One number about an episode, from its recording alone. NaN where it does not apply.
+struct Metric {
+  const char* name;  ///< with its unit as a suffix, as in result files
+  const char* unit;
+  bool lower_is_better;
+  const char* meaning;  ///< one line
+  double (*compute)(const Recording&);
+};
+
+/// Every metric, in the order of reports. To add one: write a function, add a line.
+std::span<const Metric> Metrics();
+
+}  // namespace sidestep

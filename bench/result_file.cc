@@ -1,0 +1,99 @@
+#include "bench/result_file.h"
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "bench/metrics/registry.h"
+#include "bench/statistics.h"
+#include "core/input_error.h"
+
+namespace sidestep {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json NumberOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json StageTable(const StageTimes& times) {
+  Json table = Json::object();
+  for (const auto& [stage, seconds] : times) {
+    table[stage] = {{"p50_ms", NumberOrNull(1e3 * Quantile(seconds, 0.50))},
+                    {"p95_ms", NumberOrNull(1e3 * Quantile(seconds, 0.95))},
+                    {"p99_ms", NumberOrNull(1e3 * Quantile(seconds, 0.99))}};
+  }
+  return table;
+}
+
+}  // namespace
+
+std::string ResultJson(const EpisodeResult& result, const Scenario& scenario,
+                       const std::map<std::string, std::string>& versions) {
+  Json json;
+  json["format"] = "sidestep-result-1";
+  json["scenario"] = scenario.name;
+  json["robot"] = scenario.robot;
+  json["planner"] = scenario.planner;
+  json["knowledge"] = scenario.knowledge;
+  json["predictor"] = scenario.predictor;
+  json["seed"] = scenario.seed;
+  json["parameters"] = {
+      {"epsilon_m", scenario.epsilon_m},          {"sigma_obs", scenario.sigma_obs},
+      {"n_int", scenario.num_interpolated},       {"horizon_s", scenario.horizon_s},
+      {"latency_s", scenario.latency_s},          {"replan_rate_hz", scenario.replan_rate_hz},
+      {"sensor_rate_hz", scenario.sensor_rate_hz}};
+  Json speeds = Json::object();
+  for (const MovingObstacle& obstacle : scenario.moving_obstacles) {
+    speeds[obstacle.name] =
+        std::visit([](const auto& motion) { return motion.speed_m_s; }, obstacle.motion);
+  }
+  json["obstacle_speeds_m_s"] = speeds;
+  json["outcome"] = ToString(result.outcome);
+  for (const Metric& metric : Metrics()) {
+    json[metric.name] = NumberOrNull(result.recording.metrics.at(metric.name));
+  }
+  json["versions"] = versions;
+  json["wall_clock"] = {{"episode_s", result.wall_s}, {"cycle_cpu", StageTable(result.times)}};
+  return json.dump(2) + "\n";
+}
+
+ResultSummary ReadResult(const std::string& path) {
+  std::ifstream stream(path);
+  if (!stream) throw InputError(path, "no such file, or it cannot be read");
+  const Json json = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object() || json.value("format", "") != "sidestep-result-1") {
+    throw InputError(path, "is not a result.json of sidestep");
+  }
+  ResultSummary summary;
+  try {
+    summary.scenario = json.at("scenario").get<std::string>();
+    summary.knowledge = json.at("knowledge").get<std::string>();
+    summary.outcome = json.at("outcome").get<std::string>();
+    for (const Metric& metric : Metrics()) {
+      const Json& value = json.at(metric.name);
+      summary.metrics[metric.name] =
+          value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+    }
+    const Json& p50 = json.at("wall_clock").at("cycle_cpu").at("cycle").at("p50_ms");
+    summary.cycle_p50_ms =
+        p50.is_null() ? std::numeric_limits<double>::quiet_NaN() : p50.get<double>();
+  } catch (const Json::exception& error) {
+    throw InputError(path, std::string("is not a whole result: ") + error.what());
+  }
+  return summary;
+}
+
+void WriteTextFile(const std::string& path, const std::string& text) {
+  const std::string temporary = path + ".part";
+  std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
+  stream << text;
+  stream.close();
+  if (!stream || std::rename(temporary.c_str(), path.c_str()) != 0) {
+    std::remove(temporary.c_str());
+    throw InputError(path, "cannot be written");
+  }
+}
+
+}  // namespace sidestep

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "bench/episode.h"
+
+namespace sidestep {
+
+/// The text of result.json: outcome, metrics, scenario, versions; and, under "wall_clock" alone,
+/// everything that may differ between equal runs. Numbers that do not apply are null.
+/// @param versions of the code and libraries, of the machine's C library variant, ...
+std::string ResultJson(const EpisodeResult& result, const Scenario& scenario,
+                       const std::map<std::string, std::string>& versions);
+
+/// What a comparison table needs of a result.json.
+struct ResultSummary {
+  std::string scenario, knowledge, outcome;
+  std::map<std::string, double> metrics;  ///< NaN where null
+  double cycle_p50_ms = 0;
+};
+
+/// @throws InputError if the file is missing, not JSON, or not a result.
+ResultSummary ReadResult(const std::string& path);
+
+/// Writes a text file atomically (a temporary beside it, then a rename).
+/// @throws InputError if it cannot be written.
+void WriteTextFile(const std::string& path, const std::string& text);
+
+}  // namespace sidestep
