@@ -31,52 +31,37 @@ double CylinderDistance(const Cylinder& cylinder, const Eigen::Vector3d& p) {
          std::min(std::max(radial, axial), 0.0);
 }
 
-// The nearest point x of the surface satisfies x_i = e_i^2 p_i / (t + e_i^2) for the largest root t
-// of sum (e_i p_i / (t + e_i^2))^2 = 1, which decreases strictly right of t = -e_min^2.
+// With the semi-axes e and the smallest of them m, the nearest point x of the surface satisfies
+// p_i - x_i = (s - m^2) p_i / (s + e_i^2 - m^2) for the root s >= 0 of
+// sum (e_i p_i / (s + e_i^2 - m^2))^2 = 1. The sum falls strictly with s, and the signed distance
+// is (s - m^2) |p_i / (s + e_i^2 - m^2)|. Counting s from the pole keeps all digits near it.
 double EllipsoidDistance(const Eigen::Vector3d& axes, const Eigen::Vector3d& p_signed) {
-  Eigen::Vector3d p = p_signed.cwiseAbs();
-  const double smallest = axes.minCoeff();
-  const Eigen::Array3d e2 = axes.array().square();
-  const Eigen::Array3d ep = axes.array() * p.array();
-  const auto excess = [&](double t) { return (ep / (t + e2)).square().sum() - 1; };
-  const bool inside = (p.array() / axes.array()).square().sum() < 1;
+  const Eigen::Array3d p = p_signed.array().abs();
+  const Eigen::Array3d ep = axes.array() * p;
+  const double m = axes.minCoeff();
+  const Eigen::Array3d above_m2 = (axes.array() - m) * (axes.array() + m);  // e^2 - m^2
+  const auto along_smallest = [&](const Eigen::Array3d& v) {
+    return (above_m2 == 0).select(v, 0).matrix().norm();
+  };
 
-  double low = -smallest * smallest;
-  // On the plane of symmetry across the smallest axis the sum may stay below 1 down to its pole:
-  // then the nearest point leaves that plane, and t is the pole itself.
-  double at_pole = -1;
-  for (int i = 0; i < 3; ++i) {
-    if (e2(i) > e2.minCoeff()) {
-      const double term = ep(i) / (low + e2(i));
-      at_pole += term * term;
-    } else if (ep(i) > 0) {
-      at_pole = 1;
+  double low = along_smallest(ep);   // the sum is >= 1: already these terms make it so
+  double high = ep.matrix().norm();  // the sum is <= 1: every denominator is >= s
+  if (low == 0) {
+    // On the plane of symmetry across the smallest axis the sum may stay below 1 down to s = 0.
+    // Then two points mirrored at that plane are nearest, and p is inside.
+    const Eigen::Array3d ratio = (above_m2 == 0).select(0, ep / above_m2);
+    const double rest = 1 - ratio.square().sum();
+    if (rest > 0) {
+      const Eigen::Array3d in_plane = (above_m2 == 0).select(0, m * m * p / above_m2);
+      return -std::hypot(in_plane.matrix().norm(), m * std::sqrt(rest));
     }
   }
-  if (at_pole < 0) {
-    Eigen::Vector3d x;
-    double rest = 1;
-    int free_axis = 0;
-    for (int i = 0; i < 3; ++i) {
-      if (e2(i) > e2.minCoeff()) {
-        x(i) = e2(i) * p(i) / (low + e2(i));
-        rest -= x(i) * x(i) / e2(i);
-      } else {
-        x(i) = 0;
-        free_axis = i;
-      }
-    }
-    x(free_axis) = axes(free_axis) * std::sqrt(std::max(rest, 0.0));
-    return (inside ? -1 : 1) * (p - x).norm();
+  for (int i = 0; i < 200; ++i) {
+    const double s = low + (high - low) / 2;
+    if (s == low || s == high) break;
+    ((ep / (s + above_m2)).square().sum() > 1 ? low : high) = s;
   }
-  double high = ep.matrix().norm();  // excess(high) <= 0, because every denominator exceeds `high`
-  for (int i = 0; i < 200 && low < high; ++i) {
-    const double t = low + (high - low) / 2;
-    if (t == low || t == high) break;
-    (excess(t) > 0 ? low : high) = t;
-  }
-  const Eigen::Vector3d x = (e2 * p.array() / (high + e2)).matrix();
-  return (inside ? -1 : 1) * (p - x).norm();
+  return (high - m * m) * (p / (high + above_m2)).matrix().norm();
 }
 
 }  // namespace

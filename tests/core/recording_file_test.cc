@@ -1,0 +1,436 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <hdf5.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "core/hdf5_image.h"
+#include "core/input_error.h"
+#include "core/recording.h"
+#include "core/sealed_file.h"
+
+namespace sidestep {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+const SealedFormat kFormat = {"sidestep trace", 1};
+constexpr std::size_t kHeadBytes = 512;
+
+// A folder of its own for each test, gone afterwards.
+class RecordingFile : public ::testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
+
+ private:
+  std::filesystem::path folder_ = std::filesystem::path(::testing::TempDir()) /
+                                  ("recording_file_" + std::to_string(getpid()) + "_" +
+                                   ::testing::UnitTest::GetInstance()->current_test_info()->name());
+};
+
+std::string ReadBytes(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+void WriteBytes(const std::string& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+// What ReadRecording says about a file it refuses; fails the test if it accepts it.
+std::string Refusal(const std::string& path) {
+  try {
+    ReadRecording(path);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << path << " was accepted";
+  return "";
+}
+
+Pose TurnedPose(double angle, double x) {
+  return Pose(
+      Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d(1, -2, 0.5).normalized())),
+      {x, -x, 2 * x});
+}
+
+// Every field set, no two alike, ragged parts ragged.
+Recording FullRecording() {
+  Recording recording;
+  recording.header = {{"knowledge", "prediction"}, {"scenario", "allée à piétons"}, {"empty", ""}};
+  recording.scenario_yaml = "name: test\nspeed: 1.4\n";
+  recording.model_xml = "<mujoco/>";
+  recording.joints = {"shoulder", "elbow"};
+  recording.obstacles = {"trolley", "ball", "door"};
+  recording.q_start = Eigen::Vector2d(0.1, -0.2);
+  recording.q_goal = Eigen::Vector2d(1.0 / 3, std::nextafter(1.0, 2.0));
+  recording.v_max = Eigen::Vector2d(2.175, 2.61);
+  for (int i = 0; i < 5000; ++i) {  // More rows than one chunk holds.
+    ControlSample sample;
+    sample.t = EpisodeTime(0.001 * i);
+    sample.q_command = Eigen::Vector2d(i, 0.5 * i);
+    sample.v_command = Eigen::Vector2d(i + 0.1, -i);
+    sample.a_command = Eigen::Vector2d(std::sin(i), std::cos(i));
+    sample.q = Eigen::Vector2d(i + 0.2, 1e-300 * i);
+    sample.v = Eigen::Vector2d(i + 0.3, -0.0);
+    sample.torque = Eigen::Vector2d(i + 0.4, 1e300);
+    recording.control.push_back(sample);
+  }
+  for (int i = 0; i < 3; ++i) {
+    TruthSample sample;
+    sample.t = EpisodeTime(0.01 * i);
+    sample.clearance_m = 0.1 - 0.07 * i;
+    sample.nearest_robot_part = i == 0 ? "hand" : "forearm";
+    sample.nearest_object = i == 0 ? "table" : "trolley";
+    sample.in_contact = i == 2;
+    if (sample.in_contact) {
+      sample.contact_s = 0.0195;
+      sample.contact_object = "trolley";
+      sample.p_WContact = {0.7, -0.8, 0.9};
+    }
+    for (int k = 0; k < 3; ++k) sample.X_WO.push_back(TurnedPose(0.3 * i + k, i - 2.0 * k));
+    recording.truth.push_back(sample);
+  }
+  for (int i = 0; i < 3; ++i) {
+    CycleRecord cycle;
+    cycle.t = EpisodeTime(0.1 * i);
+    cycle.t_effect = EpisodeTime(0.1 * i + 0.1);
+    cycle.status = i == 1 ? "not_converged" : "solved";
+    cycle.accepted = i != 1;
+    cycle.iterations = 7 + i;
+    cycle.cost = 12.5 * i;
+    cycle.predicted_clearance_m = 0.04 - i;
+    cycle.plan_start = EpisodeTime(0.1 * i + 0.05);
+    if (i != 1) {
+      const int num_states = 3 + i;
+      cycle.plan.t_s = Eigen::VectorXd::LinSpaced(num_states, 0, 3);
+      cycle.plan.q = Eigen::MatrixXd::Constant(2, num_states, 0.25 * i);
+      cycle.plan.q(1, 2) = 9;
+      cycle.plan.v = cycle.plan.q.array() + 1;
+    }
+    for (int k = 0; k < i; ++k) {
+      PredictedObject object;
+      object.id = 10 * i + k;
+      object.half_extents_m = {0.1 + k, 0.2 + k, 0.3 + k};
+      for (int m = 0; m <= k; ++m) {
+        object.t.push_back(EpisodeTime(0.1 * i + 0.5 * m));
+        object.X_WO.push_back(TurnedPose(0.1 * m, 3 + m));
+      }
+      cycle.objects.push_back(object);
+    }
+    recording.cycles.push_back(cycle);
+  }
+  recording.metrics = {{"min_clearance_m", -0.04},
+                       {"time_to_goal_s", std::numeric_limits<double>::quiet_NaN()}};
+  return recording;
+}
+
+void ExpectEqual(double a, double b) { EXPECT_TRUE(a == b || (std::isnan(a) && std::isnan(b))); }
+
+void ExpectEqual(const Pose& a, const Pose& b) {
+  EXPECT_EQ(a.translation(), b.translation());
+  EXPECT_EQ(a.rotation().coeffs(), b.rotation().coeffs());
+}
+
+void ExpectEqual(const ControlSample& a, const ControlSample& b) {
+  EXPECT_EQ(a.t, b.t);
+  EXPECT_EQ(a.q_command, b.q_command);
+  EXPECT_EQ(a.v_command, b.v_command);
+  EXPECT_EQ(a.a_command, b.a_command);
+  EXPECT_EQ(a.q, b.q);
+  EXPECT_EQ(a.v, b.v);
+  EXPECT_EQ(a.torque, b.torque);
+}
+
+void ExpectEqual(const TruthSample& a, const TruthSample& b) {
+  EXPECT_EQ(a.t, b.t);
+  EXPECT_EQ(a.clearance_m, b.clearance_m);
+  EXPECT_EQ(a.nearest_robot_part, b.nearest_robot_part);
+  EXPECT_EQ(a.nearest_object, b.nearest_object);
+  EXPECT_EQ(a.in_contact, b.in_contact);
+  ExpectEqual(a.contact_s, b.contact_s);
+  EXPECT_EQ(a.contact_object, b.contact_object);
+  EXPECT_EQ(a.p_WContact, b.p_WContact);
+  ASSERT_EQ(a.X_WO.size(), b.X_WO.size());
+  for (std::size_t i = 0; i < a.X_WO.size(); ++i) ExpectEqual(a.X_WO[i], b.X_WO[i]);
+}
+
+void ExpectEqual(const PredictedObject& a, const PredictedObject& b) {
+  EXPECT_EQ(a.id, b.id);
+  EXPECT_EQ(a.half_extents_m, b.half_extents_m);
+  EXPECT_EQ(a.t, b.t);
+  ASSERT_EQ(a.X_WO.size(), b.X_WO.size());
+  for (std::size_t i = 0; i < a.X_WO.size(); ++i) ExpectEqual(a.X_WO[i], b.X_WO[i]);
+}
+
+void ExpectEqual(const CycleRecord& a, const CycleRecord& b) {
+  EXPECT_EQ(a.t, b.t);
+  EXPECT_EQ(a.t_effect, b.t_effect);
+  EXPECT_EQ(a.status, b.status);
+  EXPECT_EQ(a.accepted, b.accepted);
+  EXPECT_EQ(a.iterations, b.iterations);
+  EXPECT_EQ(a.cost, b.cost);
+  EXPECT_EQ(a.predicted_clearance_m, b.predicted_clearance_m);
+  EXPECT_EQ(a.plan_start, b.plan_start);
+  EXPECT_EQ(a.plan.t_s, b.plan.t_s);
+  EXPECT_EQ(a.plan.q, b.plan.q);
+  EXPECT_EQ(a.plan.v, b.plan.v);
+  ASSERT_EQ(a.objects.size(), b.objects.size());
+  for (std::size_t i = 0; i < a.objects.size(); ++i) ExpectEqual(a.objects[i], b.objects[i]);
+}
+
+template <typename T>
+void ExpectEqual(const std::vector<T>& a, const std::vector<T>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) ExpectEqual(a[i], b[i]);
+}
+
+void ExpectEqual(const Recording& a, const Recording& b) {
+  EXPECT_EQ(a.header, b.header);
+  EXPECT_EQ(a.scenario_yaml, b.scenario_yaml);
+  EXPECT_EQ(a.model_xml, b.model_xml);
+  EXPECT_EQ(a.joints, b.joints);
+  EXPECT_EQ(a.obstacles, b.obstacles);
+  EXPECT_EQ(a.q_start, b.q_start);
+  EXPECT_EQ(a.q_goal, b.q_goal);
+  EXPECT_EQ(a.v_max, b.v_max);
+  ExpectEqual(a.control, b.control);
+  ExpectEqual(a.truth, b.truth);
+  ExpectEqual(a.cycles, b.cycles);
+  ASSERT_EQ(a.metrics.size(), b.metrics.size());
+  for (const auto& [name, value] : a.metrics) ExpectEqual(value, b.metrics.at(name));
+}
+
+TEST_F(RecordingFile, GivesBackEveryFieldExactly) {
+  const Recording recording = FullRecording();
+  WriteRecording(recording, Path("trace.h5"));
+  ExpectEqual(recording, ReadRecording(Path("trace.h5")));
+}
+
+TEST_F(RecordingFile, GivesBackARecordingInWhichNothingHappened) {
+  const Recording nothing;
+  WriteRecording(nothing, Path("trace.h5"));
+  ExpectEqual(nothing, ReadRecording(Path("trace.h5")));
+}
+
+TEST_F(RecordingFile, HasEqualBytesForEqualRecordings) {
+  WriteRecording(FullRecording(), Path("a.h5"));
+  sleep(1);  // HDF5's time stamps count whole seconds.
+  WriteRecording(FullRecording(), Path("b.h5"));
+  WriteRecording(ReadRecording(Path("a.h5")), Path("c.h5"));
+  const std::string bytes = ReadBytes(Path("a.h5"));
+  EXPECT_EQ(bytes, ReadBytes(Path("b.h5")));
+  EXPECT_EQ(bytes, ReadBytes(Path("c.h5")));
+
+  Recording other = FullRecording();
+  other.control[4999].torque(1) = std::nextafter(1e300, 0.0);
+  WriteRecording(other, Path("d.h5"));
+  EXPECT_NE(bytes, ReadBytes(Path("d.h5")));
+}
+
+TEST_F(RecordingFile, OpensAsPlainHdf5) {
+  WriteRecording(FullRecording(), Path("trace.h5"));
+  const hid_t file = H5Fopen(Path("trace.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  ASSERT_GE(file, 0);
+  const hid_t dataset = H5Dopen2(file, "control/q", H5P_DEFAULT);
+  ASSERT_GE(dataset, 0);
+  std::vector<double> q(5000 * 2);
+  EXPECT_GE(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, q.data()), 0);
+  EXPECT_EQ(q[2 * 4321], 4321.2);
+  H5Dclose(dataset);
+  H5Fclose(file);
+}
+
+TEST_F(RecordingFile, ReplacesAnOlderFileAndLeavesNothingElseBehind) {
+  WriteBytes(Path("trace.h5"), "something older");
+  WriteRecording(FullRecording(), Path("trace.h5"));
+  ExpectEqual(FullRecording(), ReadRecording(Path("trace.h5")));
+  const auto folder = std::filesystem::path(Path("trace.h5")).parent_path();
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
+}
+
+TEST_F(RecordingFile, SaysWhyAFileCannotBeWrittenAndLeavesNothingBehind) {
+  try {
+    WriteRecording(FullRecording(), Path("absent/trace.h5"));
+    FAIL() << "was written";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(),
+              Path("absent/trace.h5") + ": cannot be written: No such file or directory");
+  }
+  std::filesystem::create_directories(Path("folder/inner"));
+  EXPECT_THROW(WriteRecording(FullRecording(), Path("folder")), InputError);
+  const auto folder = std::filesystem::path(Path("folder")).parent_path();
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
+}
+
+TEST_F(RecordingFile, RefusesToWriteARecordingThatDisagreesWithItself) {
+  const std::function<void(Recording&)> faults[] = {
+      [](Recording& r) { r.q_start.resize(3); },
+      [](Recording& r) { r.v_max.resize(0); },
+      [](Recording& r) { r.control[7].torque.resize(1); },
+      [](Recording& r) { r.control[7].t = r.control[8].t; },
+      [](Recording& r) { r.truth[1].X_WO.pop_back(); },
+      [](Recording& r) { r.cycles[0].plan.v.resize(2, 1); },
+      [](Recording& r) { r.cycles[2].objects[1].t.pop_back(); },
+      [](Recording& r) { r.scenario_yaml[3] = '\0'; },
+  };
+  for (std::size_t i = 0; i < std::size(faults); ++i) {
+    Recording recording = FullRecording();
+    faults[i](recording);
+    EXPECT_THROW(WriteRecording(recording, Path("trace.h5")), std::invalid_argument) << i;
+    EXPECT_FALSE(std::filesystem::exists(Path("trace.h5"))) << i;
+  }
+}
+
+TEST_F(RecordingFile, SaysWhatIsWrongWithAFileThatIsNone) {
+  EXPECT_EQ(Refusal(Path("absent.h5")), Path("absent.h5") + ": no such file");
+  EXPECT_EQ(Refusal(Path("")), Path("") + ": is a directory, not a file");
+  WriteBytes(Path("empty.h5"), "");
+  EXPECT_EQ(Refusal(Path("empty.h5")), Path("empty.h5") + ": is empty");
+  WriteBytes(Path("text.h5"), "name: hsr_walkway\n");
+  EXPECT_EQ(Refusal(Path("text.h5")), Path("text.h5") + ": is not a sidestep trace file");
+  EXPECT_EQ(Refusal("/dev/zero"), "/dev/zero: is not a regular file");
+}
+
+TEST_F(RecordingFile, NamesTheVersionItCannotRead) {
+  WriteSealedFile(Path("new.h5"), {"sidestep trace", 2}, {});
+  EXPECT_EQ(Refusal(Path("new.h5")),
+            Path("new.h5") +
+                ": is of version 2 of the sidestep trace format; this program reads version 1");
+}
+
+TEST_F(RecordingFile, IsRefusedWhereverItIsCut) {
+  WriteRecording(FullRecording(), Path("whole.h5"));
+  const std::string whole = ReadBytes(Path("whole.h5"));
+  ASSERT_GT(whole.size(), 10000u);
+  for (std::size_t size = 1; size < whole.size(); size += size < 1200 ? 37 : 4001) {
+    WriteBytes(Path("cut.h5"), whole.substr(0, size));
+    EXPECT_THAT(Refusal(Path("cut.h5")),
+                AllOf(StartsWith(Path("cut.h5") + ": is "), Not(HasSubstr("\n"))));
+  }
+  WriteBytes(Path("cut.h5"), whole.substr(0, whole.size() - 1));
+  EXPECT_EQ(Refusal(Path("cut.h5")), Path("cut.h5") + ": is cut off: it holds " +
+                                         std::to_string(whole.size() - kHeadBytes - 1) + " of " +
+                                         std::to_string(whole.size() - kHeadBytes) + " bytes");
+  WriteBytes(Path("cut.h5"), whole + "x");
+  EXPECT_EQ(Refusal(Path("cut.h5")),
+            Path("cut.h5") + ": is damaged: its contents do not match its checksum");
+}
+
+TEST_F(RecordingFile, IsRefusedWhicheverByteIsDamaged) {
+  Recording small;
+  small.joints = {"hinge"};
+  small.q_start = small.q_goal = small.v_max = Eigen::VectorXd::Ones(1);
+  WriteRecording(small, Path("whole.h5"));
+  const std::string whole = ReadBytes(Path("whole.h5"));
+  for (std::size_t i = 0; i < whole.size(); i += i < kHeadBytes ? 1 : 13) {
+    std::string damaged = whole;
+    damaged[i] = static_cast<char>(damaged[i] ^ (1 << (i % 8)));
+    WriteBytes(Path("damaged.h5"), damaged);
+    EXPECT_THAT(Refusal(Path("damaged.h5")), StartsWith(Path("damaged.h5") + ": ")) << i;
+  }
+}
+
+// Files whose seal is right and whose contents are not, as a faulty writer would leave them.
+struct Fault {
+  std::string name;
+  std::string dataset;  // replaced ...
+  std::vector<hsize_t> shape;
+  std::vector<double> values;  // ... by these, or left out if there are none
+  std::string message;
+};
+
+std::ostream& operator<<(std::ostream& out, const Fault& fault) { return out << fault.name; }
+
+class FaultyContents : public RecordingFile, public ::testing::WithParamInterface<Fault> {};
+
+// The HDF5 bytes of a recording with one dataset replaced or deleted.
+std::vector<unsigned char> WithFault(const std::string& path, const Fault& fault) {
+  std::vector<unsigned char> payload = ReadSealedFile(path, kFormat);
+  const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS));
+  EXPECT_GE(H5Pset_fapl_core(access, 4096, false), 0);
+  EXPECT_GE(H5Pset_file_image(access, payload.data(), payload.size()), 0);
+  const Hdf5Id file(H5Fopen("in memory", H5F_ACC_RDWR, access));
+  EXPECT_GE(H5Ldelete(file, fault.dataset.c_str(), H5P_DEFAULT), 0) << fault.dataset;
+  if (!fault.values.empty()) {
+    const Hdf5Id space(
+        H5Screate_simple(static_cast<int>(fault.shape.size()), fault.shape.data(), nullptr));
+    const Hdf5Id dataset(H5Dcreate2(file, fault.dataset.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT,
+                                    H5P_DEFAULT, H5P_DEFAULT));
+    EXPECT_GE(
+        H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, fault.values.data()),
+        0);
+  }
+  EXPECT_GE(H5Fflush(file, H5F_SCOPE_GLOBAL), 0);
+  std::vector<unsigned char> image(static_cast<std::size_t>(H5Fget_file_image(file, nullptr, 0)));
+  EXPECT_GT(H5Fget_file_image(file, image.data(), image.size()), 0);
+  return image;
+}
+
+TEST_P(FaultyContents, AreRefusedWithTheirReason) {
+  WriteRecording(FullRecording(), Path("good.h5"));
+  WriteSealedFile(Path("bad.h5"), kFormat, WithFault(Path("good.h5"), GetParam()));
+  EXPECT_EQ(Refusal(Path("bad.h5")), Path("bad.h5") + ": " + GetParam().message);
+}
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+INSTANTIATE_TEST_SUITE_P(
+    RecordingFile, FaultyContents,
+    ::testing::Values(
+        Fault{"Missing", "truth/clearance", {}, {}, "truth/clearance: is missing"},
+        Fault{"MissingGroup", "cycles", {}, {}, "cycles/t: is missing"},
+        Fault{"OtherType", "cycles/status", {3}, {1, 2, 3}, "cycles/status: does not hold texts"},
+        Fault{"OtherRank", "q_goal", {1, 2}, {1, 2}, "q_goal: has shape 1 x 2, expected shape 2"},
+        Fault{"TooShort",
+              "truth/clearance",
+              {2},
+              {1, 2},
+              "truth/clearance: has shape 2, expected shape 3"},
+        Fault{"TimeNotFinite",
+              "cycles/t",
+              {3},
+              {0, kNan, 1},
+              "cycles/t: holds a time that is not finite"},
+        Fault{"TimeDoesNotIncrease", "truth/t", {3}, {0, 1, 1}, "truth/t: does not increase"},
+        Fault{"OffsetsOfAnotherType",
+              "plans/offset",
+              {4},
+              {0, 3, 3, 8},
+              "plans/offset: does not hold whole numbers"},
+        Fault{"PlanNotFinite",
+              "plans/t",
+              {8},
+              {0, 1.5, 1.5, 0, 0.75, 1.5, 2.25, 3},
+              "plans: cycle 0: trajectory: times must increase strictly"},
+        Fault{"PoseZero",
+              "predictions/poses/quaternion",
+              {4, 4},
+              std::vector<double>(16, 0),
+              "predictions/poses/quaternion: row 0 is not a finite pose"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST_F(RecordingFile, IsRefusedWithoutReadableHdf5Inside) {
+  const std::vector<unsigned char> noise(5000, 0x5a);
+  WriteSealedFile(Path("noise.h5"), kFormat, noise);
+  EXPECT_EQ(Refusal(Path("noise.h5")), Path("noise.h5") + ": does not hold readable HDF5");
+  WriteSealedFile(Path("nothing.h5"), kFormat, {});
+  EXPECT_EQ(Refusal(Path("nothing.h5")), Path("nothing.h5") + ": does not hold readable HDF5");
+}
+
+}  // namespace
+}  // namespace sidestep
