@@ -1,0 +1,100 @@
+#include "scenarios/scenario.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace sidestep {
+namespace {
+
+const std::string kFolder = SIDESTEP_SOURCE_DIR "/scenarios";
+
+class EveryScenario : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(EveryScenario, LoadsAndReadsBackAsItWasWritten) {
+  const Scenario scenario = LoadScenario(kFolder + "/" + GetParam() + ".yaml");
+  const std::string yaml = ToYaml(scenario);
+  const Scenario again = ParseScenario(yaml, "written.yaml");
+  EXPECT_EQ(ToYaml(again), yaml);
+  EXPECT_EQ(again.name, GetParam());
+  EXPECT_EQ(again.grid, scenario.grid);
+  ASSERT_EQ(again.moving_obstacles.size(), scenario.moving_obstacles.size());
+  for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
+    for (const double t_s : {0.0, 0.7, 3.0}) {
+      const EpisodeTime t(t_s);
+      EXPECT_EQ(PoseAt(again.moving_obstacles[i], t).translation(),
+                PoseAt(scenario.moving_obstacles[i], t).translation());
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shipped, EveryScenario, ::testing::ValuesIn(ScenarioNames(kFolder)),
+                         [](const auto& test) { return test.param; });
+
+TEST(Scenario, EveryValueSurvivesWritingAndReading) {
+  const std::string text = R"(
+name: odd
+description: "quotes \" and \\ and: colons"
+robot: {model: wam, base: {position_m: [0.1, 0.2, 0.3], rpy_rad: [0.1, -0.2, 0.3]}}
+task: {start: [0.1, 0.2], goal: [0.3333333333333333, -0.2]}
+horizon: {duration_s: 2.5, step_s: 0.25}
+workspace: {first_center_m: [-0.5, 0.25, 0], cell_m: 0.03, cells: [10, 11, 12]}
+floor_m: -0.6
+static_boxes:
+  - {name: slanted, center_m: [1, 2, 3], rpy_rad: [0, 0.4, 0], size_m: [0.1, 0.2, 0.3]}
+moving_obstacles:
+  - {name: a, shape: {capsule: {radius_m: 0.1, length_m: 0.5}}, rpy_rad: [0, 1.5, 0],
+     motion: {linear: {start_m: [0, 0, 0], direction: [3, 4, 0], speed_m_s: 0.7, stop_at_s: 2}}}
+  - {name: b, shape: {cylinder: {radius_m: 0.1, length_m: 0.5}}, appearance: hsr,
+     motion: {waypoints: {points: [{position_m: [0, 0, 0]}, {position_m: [1, 0, 0]}],
+                          speed_m_s: 0.1}}}
+  - {name: c, shape: {ellipsoid: {semi_axes_m: [0.1, 0.2, 0.3]}},
+     motion: {linear: {start_m: [0, 0, 0], direction: [0, 0, 1], speed_m_s: 0}}}
+planner: {name: gpmp, epsilon_m: 0.1, sigma_obs: 0.2, n_int: 19, qc: 2, limit_scale: 0.5,
+          max_iterations: 7, velocity_limits: false}
+knowledge: static
+predictor: stationary
+replanning: {rate_hz: 4, latency_s: 0.07}
+sensor: {name: occupancy, rate_hz: 15}
+seed: 42
+)";
+  const Scenario scenario = ParseScenario(text, "odd.yaml");
+  const Scenario again = ParseScenario(ToYaml(scenario), "again.yaml");
+  EXPECT_EQ(again.description, "quotes \" and \\ and: colons");
+  EXPECT_LT((again.X_WB.rotation().coeffs() - scenario.X_WB.rotation().coeffs()).norm(), 1e-15);
+  EXPECT_EQ(again.q_goal, scenario.q_goal);
+  EXPECT_EQ(again.num_interpolated, 19);
+  EXPECT_EQ(again.max_iterations, 7);
+  EXPECT_FALSE(again.velocity_limits);
+  EXPECT_TRUE(again.acceleration_limits);
+  EXPECT_EQ(again.latency_s, 0.07);
+  EXPECT_EQ(again.seed, 42u);
+  EXPECT_EQ(std::get<LinearMotion>(again.moving_obstacles[0].motion).stop_at_s, 2);
+  EXPECT_EQ(std::get<Cylinder>(again.moving_obstacles[1].shape).length_m, 0.5);
+  EXPECT_EQ(std::get<Ellipsoid>(again.moving_obstacles[2].shape).semi_axes_m,
+            Eigen::Vector3d(0.1, 0.2, 0.3));
+  const Eigen::Vector3d direction =
+      std::get<LinearMotion>(again.moving_obstacles[0].motion).direction;
+  EXPECT_LT((direction - Eigen::Vector3d(0.6, 0.8, 0)).norm(), 1e-15);
+}
+
+TEST(Scenario, WithoutANameIsNamedAfterItsFile) {
+  EXPECT_EQ(LoadScenario(kFolder + "/hsr_walkway.yaml").name, "hsr_walkway");
+}
+
+TEST(HsrWalkway, HasThePublishedGeometryWhereItWasMeantToBe) {
+  const Scenario scenario = LoadScenario(kFolder + "/hsr_walkway.yaml");
+  EXPECT_EQ(scenario.X_WB.translation(), Eigen::Vector3d(0, 0, 0.4));
+  ASSERT_EQ(scenario.static_boxes.size(), 2u);
+  EXPECT_EQ(scenario.static_boxes[0].X_WO.translation(), Eigen::Vector3d(-0.31, 0, 0.2));
+  EXPECT_EQ(scenario.static_boxes[1].X_WO.translation(), Eigen::Vector3d(1.05, 0, 0.2));
+  ASSERT_EQ(scenario.moving_obstacles.size(), 1u);
+  const MovingObstacle& hsr = scenario.moving_obstacles[0];
+  EXPECT_EQ(std::get<Box>(hsr.shape).size_m, Eigen::Vector3d(0.48, 0.55, 1.2));
+  EXPECT_LT((PoseAt(hsr, EpisodeTime(1)).translation() - Eigen::Vector3d(0.4, 0.6, 0.6)).norm(),
+            1e-12);
+}
+
+}  // namespace
+}  // namespace sidestep
