@@ -11,11 +11,13 @@
 
 namespace sidestep {
 
+/// What is true of the plan that was found; the first that applies, from the bottom up.
 enum class PlanStatus {
-  kSolved,       ///< the optimiser stopped by itself and the plan is free in the given field
-  kInCollision,  ///< it stopped, but the plan touches something in the given field
-  kNotConverged  ///< the iteration cap was reached; the trajectory is the best so far
+  kSolved,        ///< the planner stopped by itself and the plan is free in the given field
+  kNotConverged,  ///< free, but the iteration cap was reached: the best so far
+  kInCollision    ///< it touches something in the given field
 };
+/// "solved", "not_converged", "in_collision".
 std::string ToString(PlanStatus status);
 
 /// Support states k = 0 ... num_states-1 at start + k step. References are borrowed for the call.
@@ -24,12 +26,14 @@ struct PlanRequest {
   EpisodeTime start;                     ///< of support state 0
   double step_s = 0;                     ///< between support states, > 0
   int num_states = 0;                    ///< >= 2
-  Eigen::VectorXd q_start, v_start;      ///< shape n
+  Eigen::VectorXd q_start, v_start;      ///< shape n: state 0
   Eigen::VectorXd q_goal;                ///< shape n; the goal velocity is zero
-  /// The first guess (same grid). Without one: the straight line from start to goal.
+  /// The first guess: a good motion on the same grid, such as the plan that runs; its state 0 gives
+  /// way to (q_start, v_start). Without one the planner makes its own guess.
   std::optional<Trajectory> initial;
-  /// The first `num_fixed` states stay exactly as in `initial`: what the robot will do anyway.
-  /// At least 1; state 0 is then (q_start, v_start). More than 1 needs `initial`.
+  /// The first `num_fixed` states (>= 1, < num_states) are what the robot will do anyway and stay
+  /// exactly as in `initial`. Without `initial` the robot rests there, and v_start must be zero if
+  /// num_fixed > 1.
   int num_fixed = 1;
 };
 
@@ -40,11 +44,15 @@ struct PlanCost {
 
 struct PlanResult {
   PlanStatus status = PlanStatus::kNotConverged;
-  Trajectory trajectory;  ///< always filled, on the request's grid
-  int iterations = 0;
-  PlanCost cost;                 ///< each part half the sum of squared residuals
+  Trajectory trajectory;  ///< always filled and finite, on the request's grid
+  int iterations = 0;     ///< of all solves together
+  /// Each part half the sum of squared residuals; what only fixed states decide is left out.
+  PlanCost cost;
   double min_clearance_m = 0;    ///< least distance - radius along the free part, in the field
-  int samples_outside_grid = 0;  ///< sphere positions of the final check outside the mapped box
+  int samples_outside_grid = 0;  ///< sphere positions of that check outside the mapped box
+  /// Largest share of the robot's position, velocity or acceleration limits that the free part
+  /// uses; above 1 it exceeds one.
+  double limit_use = 0;
 };
 
 /// Request in, result out; no hidden state: equal requests give equal bits.
@@ -54,9 +62,14 @@ class Planner {
   /// @throws std::invalid_argument for a wrong shape, a value that is not finite, no field, ...
   PlanResult Plan(const PlanRequest& request) const;
 
+  const RobotModel& robot() const { return robot_; }
+
  protected:
   explicit Planner(const RobotModel& robot) : robot_(robot) {}
-  const RobotModel& robot() const { return robot_; }
+
+  /// Judges a motion by its clearance and use of limits: fills all of the result but its cost and
+  /// iterations.
+  PlanResult Judge(const PlanRequest& request, const Trajectory& trajectory, bool converged) const;
 
  private:
   virtual PlanResult DoPlan(const PlanRequest& request) const = 0;  // `request` has been checked.

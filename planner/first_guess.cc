@@ -1,0 +1,79 @@
+#include "planner/first_guess.h"
+
+#include <stdexcept>
+#include <vector>
+
+namespace sidestep {
+namespace {
+
+constexpr double kLateBegin = 0.4;  // share of the free time
+constexpr double kEarlyEnd = 0.6;
+
+struct Knot {
+  double t_s;
+  Eigen::VectorXd q, v;
+};
+
+Trajectory FromKnots(const std::vector<Knot>& knots) {
+  const Eigen::Index n = knots.front().q.size(), K = static_cast<Eigen::Index>(knots.size());
+  Trajectory trajectory{Eigen::VectorXd(K), Eigen::MatrixXd(n, K), Eigen::MatrixXd(n, K)};
+  for (Eigen::Index k = 0; k < K; ++k) {
+    trajectory.t_s(k) = knots[k].t_s;
+    trajectory.q.col(k) = knots[k].q;
+    trajectory.v.col(k) = knots[k].v;
+  }
+  return trajectory;
+}
+
+// From (q, v) to rest at `q_goal` within `duration_s`.
+Trajectory MakeFreePart(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
+                        const Eigen::VectorXd& q_goal, double duration_s, Timing timing) {
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(q.size());
+  switch (timing) {
+    case Timing::kWholeTime:
+      return FromKnots({{0, q, v}, {duration_s, q_goal, rest}});
+    case Timing::kLeaveLate: {
+      const double begin_s = kLateBegin * duration_s;
+      // A third of v t: the cubic that brakes to rest without acceleration at its end.
+      return FromKnots(
+          {{0, q, v}, {begin_s, q + v * begin_s / 3, rest}, {duration_s, q_goal, rest}});
+    }
+    case Timing::kArriveEarly:
+      return FromKnots(
+          {{0, q, v}, {kEarlyEnd * duration_s, q_goal, rest}, {duration_s, q_goal, rest}});
+  }
+  throw std::invalid_argument("unknown Timing");
+}
+
+}  // namespace
+
+Trajectory MakeDirectMotion(const PlanRequest& request, Timing timing) {
+  const int K = request.num_states, last_fixed = request.num_fixed - 1;
+  Trajectory motion;
+  if (request.initial) {
+    motion = MakeWarmStart(request);
+  } else {
+    motion.t_s = Eigen::VectorXd::LinSpaced(K, 0, K - 1) * request.step_s;
+    motion.q = request.q_start.replicate(1, K);
+    motion.v = request.v_start.replicate(1, K);
+  }
+  const Trajectory free_part =
+      MakeFreePart(motion.q.col(last_fixed), motion.v.col(last_fixed), request.q_goal,
+                   motion.t_s(K - 1) - motion.t_s(last_fixed), timing);
+  for (int k = request.num_fixed; k < K; ++k) {
+    const TrajectoryPoint point =
+        Sample(free_part, HorizonOffset(motion.t_s(k) - motion.t_s(last_fixed)));
+    motion.q.col(k) = point.q;
+    motion.v.col(k) = point.v;
+  }
+  return motion;
+}
+
+Trajectory MakeWarmStart(const PlanRequest& request) {
+  Trajectory motion = request.initial.value();
+  motion.q.col(0) = request.q_start;
+  motion.v.col(0) = request.v_start;
+  return motion;
+}
+
+}  // namespace sidestep

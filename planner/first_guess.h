@@ -1,0 +1,25 @@
+#pragma once
+
+#include "core/trajectory.h"
+#include "planner/planner.h"
+
+namespace sidestep {
+
+/// When a direct motion uses the time it has. Nearly every plan that a moving obstacle spoils is
+/// spoilt by its timing, passing before the obstacle instead of behind it or the reverse, so other
+/// timings are the seeds worth trying.
+enum class Timing {
+  kWholeTime,    ///< leaves at once, arrives at the end
+  kLeaveLate,    ///< brakes or waits for the first 40 %
+  kArriveEarly,  ///< arrives after 60 %
+};
+
+/// The request's fixed states, then joint by joint the cubic to the goal, which it reaches at rest:
+/// with kWholeTime the smoothest motion in the sense of the GP cost, and a straight line when it
+/// begins at rest. Ignores obstacles and limits.
+Trajectory MakeDirectMotion(const PlanRequest& request, Timing timing);
+
+/// The request's `initial`, its state 0 replaced by (q_start, v_start). There must be one.
+Trajectory MakeWarmStart(const PlanRequest& request);
+
+}  // namespace sidestep

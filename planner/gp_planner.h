@@ -1,0 +1,31 @@
+#pragma once
+
+#include "planner/planner.h"
+#include "planner/planner_settings.h"
+
+namespace sidestep {
+
+/// `gpmp`: trajectory optimisation after GPMP2, by Levenberg-Marquardt in one thread, with caps on
+/// iterations and never on time.
+///
+/// A cold start is solved in two stages, first without joint limits and then with them from there:
+/// stiff limits from the beginning keep the solver on the wrong side of obstacles. A warm start is
+/// solved with limits at once. A plan is judged by its clearance, not by its cost; if it is not
+/// free within the limits, direct motions with other timings are tried as seeds, and the best
+/// counts.
+///
+/// Source: Mukadam et al., "Continuous-time Gaussian process motion planning via probabilistic
+/// inference", IJRR 37(11):1319-1340, 2018.
+class GpPlanner final : public Planner {
+ public:
+  /// @throws std::invalid_argument for settings out of range.
+  GpPlanner(const RobotModel& robot, const PlannerSettings& settings);
+
+ private:
+  PlanResult DoPlan(const PlanRequest& request) const override;
+  PlanResult Solve(const PlanRequest& request, const Trajectory& guess, bool warm) const;
+
+  PlannerSettings settings_;
+};
+
+}  // namespace sidestep

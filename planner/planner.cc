@@ -1,0 +1,91 @@
+#include "planner/planner.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "planner/clearance.h"
+#include "planner/limit_use.h"
+
+namespace sidestep {
+namespace {
+
+// Support states stand where they should to within this share of a step.
+constexpr double kGridTolerance = 1e-6;
+
+void Require(bool condition, const std::string& what) {
+  if (!condition) throw std::invalid_argument("plan request: " + what);
+}
+
+void RequireVector(const Eigen::VectorXd& vector, int n, const std::string& name) {
+  Require(vector.size() == n, name + " must have length " + std::to_string(n) + ", has " +
+                                  std::to_string(vector.size()));
+  Require(vector.allFinite(), name + " must be finite");
+}
+
+void CheckRequest(const PlanRequest& request, int n) {
+  Require(request.field != nullptr, "there is no field");
+  Require(std::isfinite(request.start.seconds()), "start must be finite");
+  Require(std::isfinite(request.step_s) && request.step_s > 0, "step_s must be > 0 and finite");
+  Require(request.num_states >= 2, "num_states must be >= 2");
+  RequireVector(request.q_start, n, "q_start");
+  RequireVector(request.v_start, n, "v_start");
+  RequireVector(request.q_goal, n, "q_goal");
+  Require(request.num_fixed >= 1 && request.num_fixed < request.num_states,
+          "num_fixed must be >= 1 and < num_states");
+  if (!request.initial) {
+    Require(request.num_fixed == 1 || request.v_start.isZero(0),
+            "without an initial guess, several fixed states need a start at rest");
+    return;
+  }
+  CheckTrajectory(*request.initial);
+  Require(request.initial->num_joints() == n, "initial must have as many joints as the robot");
+  Require(request.initial->num_states() == request.num_states,
+          "initial must have num_states states");
+  for (int k = 0; k < request.num_states; ++k) {
+    Require(
+        std::abs(request.initial->t_s(k) - k * request.step_s) <= kGridTolerance * request.step_s,
+        "initial must stand on the request's grid");
+  }
+  Require(request.num_fixed == 1 || (request.initial->q.col(0) == request.q_start &&
+                                     request.initial->v.col(0) == request.v_start),
+          "with several fixed states, initial must begin at q_start, v_start");
+}
+
+}  // namespace
+
+std::string ToString(PlanStatus status) {
+  switch (status) {
+    case PlanStatus::kSolved:
+      return "solved";
+    case PlanStatus::kNotConverged:
+      return "not_converged";
+    case PlanStatus::kInCollision:
+      return "in_collision";
+  }
+  throw std::invalid_argument("unknown PlanStatus");
+}
+
+PlanResult Planner::Plan(const PlanRequest& request) const {
+  CheckRequest(request, robot_.num_joints());
+  return DoPlan(request);
+}
+
+PlanResult Planner::Judge(const PlanRequest& request, const Trajectory& trajectory,
+                          bool converged) const {
+  const double free_from_s = trajectory.t_s(request.num_fixed - 1);
+  const Clearance clearance = MeasureClearance(robot_, *request.field, trajectory, request.start,
+                                               request.start + HorizonOffset(free_from_s));
+  PlanResult result;
+  result.trajectory = trajectory;
+  result.min_clearance_m = clearance.least_m;
+  result.samples_outside_grid = clearance.samples_outside_grid;
+  result.limit_use = MeasureLimitUse(robot_, trajectory, request.num_fixed - 1);
+  if (clearance.least_m <= 0) {
+    result.status = PlanStatus::kInCollision;
+  } else {
+    result.status = converged ? PlanStatus::kSolved : PlanStatus::kNotConverged;
+  }
+  return result;
+}
+
+}  // namespace sidestep

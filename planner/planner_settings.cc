@@ -1,0 +1,29 @@
+#include "planner/planner_settings.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace sidestep {
+namespace {
+
+void Require(bool condition, const std::string& what) {
+  if (!condition) throw std::invalid_argument("planner settings: " + what);
+}
+
+bool IsPositive(double value) { return std::isfinite(value) && value > 0; }
+
+}  // namespace
+
+void CheckPlannerSettings(const PlannerSettings& settings) {
+  Require(std::isfinite(settings.epsilon_m) && settings.epsilon_m >= 0, "epsilon_m must be >= 0");
+  Require(IsPositive(settings.sigma_obs), "sigma_obs must be > 0");
+  Require(settings.num_interpolated >= 0, "num_interpolated must be >= 0");
+  Require(IsPositive(settings.qc), "qc must be > 0");
+  Require(IsPositive(settings.sigma_goal), "sigma_goal must be > 0");
+  Require(settings.limit_scale > 0 && settings.limit_scale <= 1, "limit_scale must be in (0, 1]");
+  Require(settings.max_iterations >= 1, "max_iterations must be >= 1");
+  Require(IsPositive(settings.function_tolerance), "function_tolerance must be > 0");
+}
+
+}  // namespace sidestep

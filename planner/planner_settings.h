@@ -1,0 +1,24 @@
+#pragma once
+
+namespace sidestep {
+
+/// What scenario files set of a planner. Units as named; sources: the GPMP2 obstacle and GP costs.
+struct PlannerSettings {
+  double epsilon_m = 0.2;    ///< safety margin of the obstacle cost
+  double sigma_obs = 0.05;   ///< of the obstacle cost
+  int num_interpolated = 1;  ///< obstacle costs between support states (n_int)
+  double qc = 1.0;           ///< power spectral density of the GP prior, per joint
+  double sigma_goal = 1e-4;  ///< of the goal prior (position and velocity)
+  bool velocity_limits = true;
+  bool acceleration_limits = true;
+  bool position_limits = true;
+  /// Fraction of the robot's velocity and acceleration limits to plan within, (0, 1].
+  double limit_scale = 0.95;
+  int max_iterations = 50;  ///< of one solve
+  double function_tolerance = 1e-4;
+};
+
+/// @throws std::invalid_argument, naming the setting, for one out of range.
+void CheckPlannerSettings(const PlannerSettings& settings);
+
+}  // namespace sidestep
