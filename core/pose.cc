@@ -1,5 +1,7 @@
 #include "core/pose.h"
 
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace sidestep {
@@ -9,7 +11,9 @@ Pose::Pose(const Eigen::Quaterniond& R_AB, const Eigen::Vector3d& p_AB) : R_AB_(
   if (!(norm > 0) || !R_AB.coeffs().allFinite() || !p_AB.allFinite()) {
     throw std::invalid_argument("Pose: the rotation must not be zero, every number finite");
   }
-  R_AB_.coeffs() /= norm;
+  // What is normalised already keeps its bits, so that a pose survives being stored and read back.
+  constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
+  if (std::abs(norm - 1) > kRounding) R_AB_.coeffs() /= norm;
 }
 
 Pose Pose::Translation(const Eigen::Vector3d& p_AB) {

@@ -38,8 +38,7 @@ class RecordingFile : public ::testing::Test {
 
  private:
   std::filesystem::path folder_ = std::filesystem::path(::testing::TempDir()) /
-                                  ("recording_file_" + std::to_string(getpid()) + "_" +
-                                   ::testing::UnitTest::GetInstance()->current_test_info()->name());
+                                  ("recording_file_" + std::to_string(getpid()));
 };
 
 std::string ReadBytes(const std::string& path) {

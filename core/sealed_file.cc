@@ -1,0 +1,133 @@
+#include "core/sealed_file.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+
+#include "core/input_error.h"
+
+namespace sidestep {
+namespace {
+
+constexpr std::size_t kHeadBytes = 512;  // the smallest user block of HDF5
+constexpr std::string_view kLengthKey = "payload_bytes ";
+constexpr std::string_view kChecksumKey = "payload_fnv1a64 ";
+
+// FNV-1a, 64 bits: every change of a single byte changes it, and almost every other change does.
+// Source: G. Fowler, L. C. Noll, K.-P. Vo, D. Eastlake, "The FNV Non-Cryptographic Hash Algorithm".
+std::uint64_t Checksum(std::span<const unsigned char> bytes) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const unsigned char byte : bytes) hash = (hash ^ byte) * 0x100000001b3u;
+  return hash;
+}
+
+std::string MakeHead(const SealedFormat& format, std::span<const unsigned char> payload) {
+  char checksum[17];
+  std::snprintf(checksum, sizeof checksum, "%016llx",
+                static_cast<unsigned long long>(Checksum(payload)));
+  std::string head = format.name + " " + std::to_string(format.version) + "\n";
+  head += std::string(kLengthKey) + std::to_string(payload.size()) + "\n";
+  head += std::string(kChecksumKey) + checksum + "\n";
+  head.resize(kHeadBytes, '\n');
+  return head;
+}
+
+// The whole number that follows `key` in `head`, or -1.
+long long NumberAfter(std::string_view head, std::string_view key) {
+  const std::size_t at = head.find(key);
+  if (at == std::string_view::npos) return -1;
+  long long number = -1;
+  std::from_chars(head.data() + at + key.size(), head.data() + head.size(), number);
+  return number;
+}
+
+// Removes the file unless it was kept.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(std::string path) : path_(std::move(path)) {}
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    if (!kept_) std::remove(path_.c_str());
+  }
+  const std::string& path() const { return path_; }
+  void Keep() { kept_ = true; }
+
+ private:
+  std::string path_;
+  bool kept_ = false;
+};
+
+[[noreturn]] void FailToWrite(const std::string& path) {
+  throw InputError(path, std::string("cannot be written: ") + std::strerror(errno));
+}
+
+}  // namespace
+
+void WriteSealedFile(const std::string& path, const SealedFormat& format,
+                     std::span<const unsigned char> payload) {
+  TemporaryFile temporary(path + "." + std::to_string(getpid()) + ".part");
+  const std::string head = MakeHead(format, payload);
+  std::FILE* const file = std::fopen(temporary.path().c_str(), "wb");
+  if (file == nullptr) FailToWrite(path);
+  const bool written = std::fwrite(head.data(), 1, head.size(), file) == head.size() &&
+                       std::fwrite(payload.data(), 1, payload.size(), file) == payload.size() &&
+                       std::fflush(file) == 0 && fsync(fileno(file)) == 0;
+  const int write_error = errno;
+  const bool closed = std::fclose(file) == 0;
+  if (!written) errno = write_error;
+  if (!written || !closed) FailToWrite(path);
+  if (std::rename(temporary.path().c_str(), path.c_str()) != 0) FailToWrite(path);
+  temporary.Keep();
+}
+
+std::vector<unsigned char> ReadSealedFile(const std::string& path, const SealedFormat& format) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) throw InputError(path, "no such file");
+  if (std::filesystem::is_directory(status)) throw InputError(path, "is a directory, not a file");
+  if (!std::filesystem::is_regular_file(status)) throw InputError(path, "is not a regular file");
+
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw InputError(path, std::string("cannot be read: ") + std::strerror(errno));
+  std::string head(kHeadBytes, '\0');
+  stream.read(head.data(), static_cast<std::streamsize>(kHeadBytes));
+  const auto head_bytes = static_cast<std::size_t>(stream.gcount());
+
+  const std::string name = format.name + " ";
+  if (head_bytes == 0) throw InputError(path, "is empty");
+  if (std::string_view(head).substr(0, name.size()) != name) {
+    throw InputError(path, "is not a " + format.name + " file");
+  }
+  if (head_bytes < kHeadBytes) throw InputError(path, "is cut off within its first 512 bytes");
+  const long long version = NumberAfter(head, name);
+  if (version != format.version) {
+    throw InputError(path, "is of version " + std::to_string(version) + " of the " + format.name +
+                               " format; this program reads version " +
+                               std::to_string(format.version));
+  }
+  const std::uintmax_t file_bytes = std::filesystem::file_size(path, error);
+  const std::uintmax_t payload_bytes = error ? 0 : file_bytes - kHeadBytes;
+  const long long expected_bytes = NumberAfter(head, kLengthKey);
+  if (expected_bytes >= 0 && payload_bytes < static_cast<std::uintmax_t>(expected_bytes)) {
+    throw InputError(path, "is cut off: it holds " + std::to_string(payload_bytes) + " of " +
+                               std::to_string(expected_bytes) + " bytes");
+  }
+  std::vector<unsigned char> payload(payload_bytes);
+  stream.read(reinterpret_cast<char*>(payload.data()),
+              static_cast<std::streamsize>(payload.size()));
+  if (stream.gcount() != static_cast<std::streamsize>(payload.size()) ||
+      head != MakeHead(format, payload)) {
+    throw InputError(path, "is damaged: its contents do not match its checksum");
+  }
+  return payload;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace sidestep {
+
+/// A file that can tell whether it is whole: 512 bytes of text that name the format, its version,
+/// and the length and checksum of what follows, then the payload. A cut, a flipped bit or a file of
+/// another kind is found before anything interprets the payload. HDF5 skips such a head (it calls
+/// it a user block), so a payload in HDF5 opens with the usual tools.
+struct SealedFormat {
+  std::string name;  ///< e.g. "sidestep trace"
+  int version = 1;
+};
+
+/// Writes head and payload under a temporary name beside `path`, then renames: a reader sees the
+/// old file or the new one, never half of one. @throws InputError if it cannot be written.
+void WriteSealedFile(const std::string& path, const SealedFormat& format,
+                     std::span<const unsigned char> payload);
+
+/// Reads the payload back. @throws InputError `PATH: WHY` if the file is missing, a directory, of
+/// another format or version, cut off or damaged.
+std::vector<unsigned char> ReadSealedFile(const std::string& path, const SealedFormat& format);
+
+}  // namespace sidestep
