@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <stdexcept>
+#include <utility>
 
 namespace sidestep {
 namespace {
@@ -66,8 +68,12 @@ class LowerEnvelope {
   int last_ = 0;
 };
 
+// The lines of one axis are transformed in blocks of neighbours in x: in memory those are adjacent,
+// while the cells of one line lie apart, each in a cache line of its own.
+constexpr std::ptrdiff_t kBlock = 16;  // int32 values in a cache line
+
 // Transforms the squares of one line of cells: on entry those over the axes done so far, on return
-// those over this axis too.
+// those over this axis too. Neighbours on the line are `stride` values apart in memory.
 //
 // Within a run of cells of one kind, the way to the nearest cell of the other kind either starts
 // with a step along the line to another cell of the run, or to the first cell beyond the run's
@@ -77,90 +83,36 @@ class LineTransform {
   LineTransform(DistanceConvention convention, int max_length)
       : convention_(convention), envelope_(max_length + 2) {}
 
-  void operator()(const std::uint8_t* filled, std::int32_t* squares, int length) {
+  template <std::ptrdiff_t stride>
+  void Run(const std::uint8_t* filled, std::int32_t* squares, int length) {
     for (int first = 0; first < length;) {
       int last = first;
-      while (last + 1 < length && (filled[last + 1] != 0) == (filled[first] != 0)) ++last;
+      const bool kind = filled[first * stride] != 0;
+      while (last + 1 < length && (filled[(last + 1) * stride] != 0) == kind) ++last;
       envelope_.Begin(first, last);
-      const bool ends_left = first > 0;
-      const bool ends_right = last + 1 < length;
-      if (convention_ == DistanceConvention::kBwdist) {
-        AddCentres(squares, first, last, ends_left, ends_right);
-      } else {
-        AddFaces(squares, first, last, ends_left, ends_right);
+      // The distance along one axis from a centre to another cell's cube is that to its nearer
+      // face, and zero within the same cell. So in the surface convention the faces are the sites,
+      // each as low as the lower of the two cells it parts, and a cell's own square (the final min)
+      // stands for the zero.
+      const bool faces = convention_ == DistanceConvention::kSurface;
+      const int beyond = faces ? 1 : 2;
+      if (first > 0) envelope_.Add(2 * first - beyond, 0);
+      for (int i = first; i < last + (faces ? 0 : 1); ++i) {
+        const std::int32_t height =
+            faces ? std::min(squares[i * stride], squares[(i + 1) * stride]) : squares[i * stride];
+        if (height != kNoOtherCell) envelope_.Add(2 * i + (faces ? 1 : 0), height);
       }
-      envelope_.ForEachCell(
-          [&](int i, std::int32_t value) { squares[i] = std::min(squares[i], value); });
+      if (last + 1 < length) envelope_.Add(2 * last + beyond, 0);
+      envelope_.ForEachCell([&](int i, std::int32_t value) {
+        squares[i * stride] = std::min(squares[i * stride], value);
+      });
       first = last + 1;
     }
   }
 
  private:
-  void AddCentres(const std::int32_t* squares, int first, int last, bool ends_left,
-                  bool ends_right) {
-    if (ends_left) envelope_.Add(2 * first - 2, 0);
-    for (int i = first; i <= last; ++i) {
-      if (squares[i] != kNoOtherCell) envelope_.Add(2 * i, squares[i]);
-    }
-    if (ends_right) envelope_.Add(2 * last + 2, 0);
-  }
-
-  // The distance along one axis from a centre to another cell's cube is that to its nearer face,
-  // and zero within the same cell. So the faces are the sites, each as low as the lower of the two
-  // cells it parts, and a cell's own square (the final min) stands for the zero.
-  void AddFaces(const std::int32_t* squares, int first, int last, bool ends_left, bool ends_right) {
-    if (ends_left) envelope_.Add(2 * first - 1, 0);
-    for (int i = first; i < last; ++i) {
-      const std::int32_t height = std::min(squares[i], squares[i + 1]);
-      if (height != kNoOtherCell) envelope_.Add(2 * i + 1, height);
-    }
-    if (ends_right) envelope_.Add(2 * last + 1, 0);
-  }
-
   DistanceConvention convention_;
   LowerEnvelope envelope_;
-};
-
-// Transforms all lines along an axis other than x. Lines are gathered by blocks of neighbours in x,
-// because one at a time would touch a cache line for each single cell.
-class StridedPass {
- public:
-  StridedPass(const OccupancyGrid& occupancy, std::vector<std::int32_t>& squares)
-      : occupancy_(occupancy), squares_(squares) {}
-
-  void Run(LineTransform& transform, int length, std::size_t stride, int num_planes,
-           std::size_t plane_stride) {
-    const std::size_t n = static_cast<std::size_t>(length);
-    filled_.resize(kBlock * n);
-    lines_.resize(kBlock * n);
-    const std::size_t width = static_cast<std::size_t>(occupancy_.spec.size[0]);
-    for (int plane = 0; plane < num_planes; ++plane) {
-      for (std::size_t x = 0; x < width; x += kBlock) {
-        const std::size_t block = std::min(kBlock, width - x);
-        const std::size_t base = static_cast<std::size_t>(plane) * plane_stride + x;
-        for (std::size_t i = 0; i < n; ++i) {
-          for (std::size_t b = 0; b < block; ++b) {
-            filled_[b * n + i] = occupancy_.cells[base + i * stride + b];
-            lines_[b * n + i] = squares_[base + i * stride + b];
-          }
-        }
-        for (std::size_t b = 0; b < block; ++b) transform(&filled_[b * n], &lines_[b * n], length);
-        for (std::size_t i = 0; i < n; ++i) {
-          for (std::size_t b = 0; b < block; ++b) {
-            squares_[base + i * stride + b] = lines_[b * n + i];
-          }
-        }
-      }
-    }
-  }
-
- private:
-  static constexpr std::size_t kBlock = 16;  // int32 values in a cache line
-
-  const OccupancyGrid& occupancy_;
-  std::vector<std::int32_t>& squares_;
-  std::vector<std::uint8_t> filled_;
-  std::vector<std::int32_t> lines_;
 };
 
 void CheckInput(const OccupancyGrid& occupancy) {
@@ -180,17 +132,39 @@ void CheckInput(const OccupancyGrid& occupancy) {
 std::vector<std::int32_t> ComputeSquaredDistance(const OccupancyGrid& occupancy,
                                                  DistanceConvention convention) {
   CheckInput(occupancy);
-  const auto [nx, ny, nz] = occupancy.spec.size;
-  const std::size_t row = static_cast<std::size_t>(nx);
-  const std::size_t slice = row * static_cast<std::size_t>(ny);
+  const std::ptrdiff_t nx = occupancy.spec.size[0];
+  const std::ptrdiff_t ny = occupancy.spec.size[1];
+  const std::ptrdiff_t nz = occupancy.spec.size[2];
+  const std::uint8_t* const filled = occupancy.cells.data();
   std::vector<std::int32_t> squares(occupancy.cells.size(), kNoOtherCell);
-  LineTransform transform(convention, std::max({nx, ny, nz}));
-  for (std::size_t begin = 0; begin < squares.size(); begin += row) {
-    transform(&occupancy.cells[begin], &squares[begin], nx);
+  LineTransform transform(convention, static_cast<int>(std::max({nx, ny, nz})));
+
+  for (std::ptrdiff_t row = 0; row < ny * nz; ++row) {
+    transform.Run<1>(filled + row * nx, squares.data() + row * nx, static_cast<int>(nx));
   }
-  StridedPass pass(occupancy, squares);
-  pass.Run(transform, ny, row, nz, slice);
-  pass.Run(transform, nz, slice, ny, row);
+
+  std::vector<std::uint8_t> block_filled(static_cast<std::size_t>(kBlock * std::max(ny, nz)));
+  std::vector<std::int32_t> block_squares(block_filled.size());
+  // The lines that start at `begin` and its neighbours in x, `step` apart from cell to cell.
+  const auto run_block = [&](std::ptrdiff_t begin, std::ptrdiff_t width, std::ptrdiff_t length,
+                             std::ptrdiff_t step) {
+    for (std::ptrdiff_t i = 0; i < length; ++i) {
+      std::copy_n(filled + begin + i * step, width, block_filled.data() + i * kBlock);
+      std::copy_n(squares.data() + begin + i * step, width, block_squares.data() + i * kBlock);
+    }
+    for (std::ptrdiff_t b = 0; b < width; ++b) {
+      transform.Run<kBlock>(block_filled.data() + b, block_squares.data() + b,
+                            static_cast<int>(length));
+    }
+    for (std::ptrdiff_t i = 0; i < length; ++i) {
+      std::copy_n(block_squares.data() + i * kBlock, width, squares.data() + begin + i * step);
+    }
+  };
+  for (std::ptrdiff_t x = 0; x < nx; x += kBlock) {
+    const std::ptrdiff_t width = std::min(kBlock, nx - x);
+    for (std::ptrdiff_t k = 0; k < nz; ++k) run_block(x + k * nx * ny, width, ny, nx);
+    for (std::ptrdiff_t j = 0; j < ny; ++j) run_block(x + j * nx, width, nz, nx * ny);
+  }
   return squares;
 }
 
