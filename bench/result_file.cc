@@ -63,7 +63,7 @@ ResultSummary ReadResult(const std::string& path) {
   std::ifstream stream(path);
   if (!stream) throw InputError(path, "no such file, or it cannot be read");
   const Json json = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
-  if (!json.is_object() || json.value("format", "") != "sidestep-result-1") {
+  if (!json.is_object() || !json.contains("format") || json["format"] != "sidestep-result-1") {
     throw InputError(path, "is not a result.json of sidestep");
   }
   ResultSummary summary;

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace sidestep {
+
+/// What every sub-command shares with main().
+struct CommandLine {
+  CLI::App app{"Sidestep: plan a robot arm's motion around things that move"};
+  int exit_code = 0;  ///< set by the sub-command that ran
+};
+
+/// One file a sub-command; each registers itself and sets `exit_code` when it runs. Bad input is
+/// thrown as InputError, which main() prints as one line and turns into exit code 2.
+void AddRunCommand(CommandLine& line);
+void AddListCommand(CommandLine& line);
+void AddCompareCommand(CommandLine& line);
+void AddRenderCommand(CommandLine& line);
+void AddDoctorCommand(CommandLine& line);
+
+}  // namespace sidestep

@@ -1,0 +1,58 @@
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/result_file.h"
+#include "cli/command.h"
+
+namespace sidestep {
+namespace {
+
+std::string Number(const ResultSummary& result, const char* metric, double scale,
+                   const char* format) {
+  const double value = result.metrics.at(metric);
+  if (std::isnan(value)) return "-";
+  char text[64];
+  std::snprintf(text, sizeof text, format, scale * value);
+  return text;
+}
+
+// What happened, in words that need no glossary.
+std::string Verdict(const ResultSummary& result) {
+  if (result.outcome == "goal") return "reached the goal, touched nothing";
+  if (result.outcome == "collision") return "TOUCHED something";
+  if (result.outcome == "timeout") return "did not reach the goal in time";
+  return "found no plan";
+}
+
+int Compare(const std::vector<std::string>& folders) {
+  std::vector<ResultSummary> results;
+  for (const std::string& folder : folders) results.push_back(ReadResult(folder + "/result.json"));
+  std::printf("%-20s %-34s %10s %10s %10s %8s %10s %9s\n", "planner knows", "what happened",
+              "contact", "clearance", "goal", "GP cost", "jerk RMS", "cycle");
+  std::printf("%-20s %-34s %10s %10s %10s %8s %10s %9s\n", "", "", "at [s]", "least [mm]",
+              "after [s]", "", "[rad/s^3]", "[ms CPU]");
+  for (const ResultSummary& result : results) {
+    std::printf("%-20s %-34s %10s %10s %10s %8s %10s %9.1f\n", result.knowledge.c_str(),
+                Verdict(result).c_str(), Number(result, "first_contact_s", 1, "%.2f").c_str(),
+                Number(result, "min_clearance_m", 1e3, "%.0f").c_str(),
+                Number(result, "time_to_goal_s", 1, "%.2f").c_str(),
+                Number(result, "gp_cost", 1, "%.1f").c_str(),
+                Number(result, "jerk_rms", 1, "%.0f").c_str(), result.cycle_p50_ms);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void AddCompareCommand(CommandLine& line) {
+  auto folders = std::make_shared<std::vector<std::string>>();
+  CLI::App* const compare =
+      line.app.add_subcommand("compare", "Print the results of several runs as one table");
+  compare->add_option("DIR", *folders, "Folders written by `sidestep run`")->required();
+  compare->callback([&line, folders] { line.exit_code = Compare(*folders); });
+}
+
+}  // namespace sidestep

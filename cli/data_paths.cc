@@ -1,0 +1,55 @@
+#include "cli/data_paths.h"
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "core/input_error.h"
+#include "scenarios/scenario.h"
+
+namespace sidestep {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool HoldsData(const fs::path& folder) {
+  std::error_code error;
+  return fs::is_directory(folder / "models", error) &&
+         fs::is_directory(folder / "scenarios", error);
+}
+
+DataPaths In(const fs::path& folder) {
+  return {(folder / "models").string(), (folder / "scenarios").string()};
+}
+
+}  // namespace
+
+DataPaths FindDataPaths() {
+  if (const char* chosen = std::getenv("SIDESTEP_DATA_DIR")) {
+    if (HoldsData(chosen)) return In(chosen);
+    throw InputError("SIDESTEP_DATA_DIR",
+                     std::string("'") + chosen + "' does not hold models/ and scenarios/");
+  }
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const fs::path installed = program.parent_path().parent_path() / "share" / "sidestep";
+  if (!error && HoldsData(installed)) return In(installed);
+  if (HoldsData(SIDESTEP_SOURCE_DIR)) return In(SIDESTEP_SOURCE_DIR);
+  throw InputError("sidestep", "no models/ and scenarios/ found; set SIDESTEP_DATA_DIR");
+}
+
+std::string FindScenario(const std::string& scenario, const DataPaths& paths) {
+  const bool is_path = scenario.find('/') != std::string::npos ||
+                       (scenario.size() > 5 && scenario.ends_with(".yaml"));
+  if (is_path) return scenario;
+  const fs::path file = fs::path(paths.scenarios) / (scenario + ".yaml");
+  std::error_code error;
+  if (fs::exists(file, error)) return file.string();
+  std::string list;
+  for (const std::string& name : ScenarioNames(paths.scenarios)) {
+    list += (list.empty() ? "" : ", ") + name;
+  }
+  throw InputError("SCENARIO", "'" + scenario + "' is no scenario (known: " + list +
+                                   "; a path needs a / or ends in .yaml)");
+}
+
+}  // namespace sidestep

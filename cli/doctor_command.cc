@@ -1,0 +1,79 @@
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <string>
+#include <thread>
+
+#include "cli/command.h"
+#include "cli/data_paths.h"
+#include "cli/versions.h"
+#include "render/gl_context.h"
+#include "robot/robot_model.h"
+#include "scenarios/scenario.h"
+
+namespace sidestep {
+namespace {
+
+// Prints one finding a line; a remedy belongs on the same line, so that it can be grepped.
+class Report {
+ public:
+  void Good(const std::string& what, const std::string& detail) { Print("ok", what, detail); }
+  void Bad(const std::string& what, const std::string& detail, const std::string& remedy) {
+    Print("MISSING", what, detail + "; remedy: " + remedy);
+    ++num_bad_;
+  }
+  int num_bad() const { return num_bad_; }
+
+ private:
+  static void Print(const char* verdict, const std::string& what, const std::string& detail) {
+    std::printf("%-8s %-12s %s\n", verdict, what.c_str(), detail.c_str());
+  }
+  int num_bad_ = 0;
+};
+
+void CheckData(Report& report) {
+  try {
+    const DataPaths paths = FindDataPaths();
+    std::size_t num_scenarios = 0;
+    for (const std::string& name : ScenarioNames(paths.scenarios)) {
+      const Scenario scenario = LoadScenario(paths.scenarios + "/" + name + ".yaml");
+      RobotModel::Load(paths.models, scenario.robot, scenario.X_WB);
+      ++num_scenarios;
+    }
+    report.Good("data", std::to_string(num_scenarios) + " scenarios, each with its robot, in " +
+                            paths.scenarios);
+  } catch (const std::exception& error) {
+    report.Bad("data", error.what(), "set SIDESTEP_DATA_DIR to a folder with models/, scenarios/");
+  }
+}
+
+void CheckGl(Report& report) {
+  const char* const choice = std::getenv("MUJOCO_GL");
+  const std::string detail =
+      "MUJOCO_GL=" + std::string(choice == nullptr ? "(not set: osmesa)" : choice);
+  try {
+    report.Good("rendering", DescribeGl() + ", " + detail);
+  } catch (const std::exception& error) {
+    report.Bad("rendering", error.what(),
+               "unset MUJOCO_GL (only osmesa is built in; no display or GPU is needed)");
+  }
+}
+
+int Diagnose() {
+  Report report;
+  for (const auto& [part, version] : Versions()) report.Good(part, version);
+  report.Good("processors", std::to_string(std::thread::hardware_concurrency()));
+  CheckData(report);
+  CheckGl(report);
+  return report.num_bad() == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+void AddDoctorCommand(CommandLine& line) {
+  CLI::App* const doctor = line.app.add_subcommand(
+      "doctor", "Say what is installed, which GL draws, and what to do about what is missing");
+  doctor->callback([&line] { line.exit_code = Diagnose(); });
+}
+
+}  // namespace sidestep

@@ -1,0 +1,57 @@
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "cli/command.h"
+#include "cli/versions.h"
+#include "core/input_error.h"
+
+namespace {
+
+constexpr int kDone = 0, kFailed = 1, kBadInput = 2;
+
+// One line, whatever the message holds.
+int Complain(const std::string& message, int exit_code) {
+  std::string line = message;
+  for (char& c : line) {
+    if (c == '\n') c = ' ';
+  }
+  std::fprintf(stderr, "%s\n", line.c_str());
+  return exit_code;
+}
+
+int Run(int argc, char** argv) {
+  sidestep::CommandLine line;
+  line.app.name("sidestep");
+  line.app.set_version_flag("--version", sidestep::VersionText());
+  line.app.require_subcommand(1);
+  line.app.footer(
+      "Exit codes: 0 done, whatever the outcome of the run; 1 a gate failed or a run could not be\n"
+      "completed; 2 usage or bad input. `sidestep COMMAND --help` tells more.");
+  sidestep::AddRunCommand(line);
+  sidestep::AddCompareCommand(line);
+  sidestep::AddRenderCommand(line);
+  sidestep::AddListCommand(line);
+  sidestep::AddDoctorCommand(line);
+  try {
+    line.app.parse(argc, argv);
+  } catch (const CLI::Success& help) {
+    line.app.exit(help);
+    return kDone;
+  } catch (const CLI::ParseError& error) {
+    return Complain("sidestep: " + std::string(error.what()) + " (see sidestep --help)", kBadInput);
+  }
+  return line.exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return Run(argc, argv);
+  } catch (const sidestep::InputError& error) {
+    return Complain(error.what(), kBadInput);
+  } catch (const std::exception& error) {
+    return Complain(std::string("sidestep: ") + error.what(), kFailed);
+  }
+}

@@ -1,0 +1,102 @@
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "bench/episode.h"
+#include "bench/result_file.h"
+#include "bench/statistics.h"
+#include "cli/command.h"
+#include "cli/versions.h"
+#include "cli/wiring.h"
+#include "core/input_error.h"
+
+namespace sidestep {
+namespace {
+
+struct RunOptions {
+  std::string scenario;
+  Overrides overrides;
+  std::string out;
+  bool json = false;
+};
+
+std::string MakeFolder(const std::string& out) {
+  std::error_code error;
+  std::filesystem::create_directories(out, error);
+  if (error || !std::filesystem::is_directory(out)) {
+    throw InputError("--out", "'" + out + "' cannot be made a folder");
+  }
+  return out;
+}
+
+void PrintSummary(const EpisodeResult& result, const std::string& out) {
+  const auto& metrics = result.recording.metrics;
+  const auto number = [&](const char* name, double scale, const char* format) {
+    char text[64];
+    const double value = metrics.at(name);
+    std::snprintf(text, sizeof text, format, scale * value);
+    return std::isnan(value) ? std::string("-") : std::string(text);
+  };
+  std::printf("outcome          %s\n", ToString(result.outcome).c_str());
+  std::printf("first contact    %s\n", number("first_contact_s", 1, "%.3f s").c_str());
+  std::printf("least clearance  %s\n", number("min_clearance_m", 1e3, "%.1f mm").c_str());
+  std::printf("time to goal     %s\n", number("time_to_goal_s", 1, "%.3f s").c_str());
+  std::printf("GP cost          %s\n", number("gp_cost", 1, "%.2f").c_str());
+  std::printf("jerk RMS         %s\n", number("jerk_rms", 1, "%.1f rad/s^3").c_str());
+  std::printf("planning cycle   %.1f ms CPU (median of %zu)\n",
+              1e3 * Quantile(result.times.at("cycle"), 0.5), result.times.at("cycle").size());
+  std::printf("written          %s/result.json, %s/trace.h5\n", out.c_str(), out.c_str());
+}
+
+int Run(const RunOptions& options) {
+  const DataPaths paths = FindDataPaths();
+  const Problem problem = LoadProblem(options.scenario, options.overrides, paths);
+  const std::string out = MakeFolder(options.out.empty() ? "out/" + problem.scenario.name + "/" +
+                                                               problem.scenario.knowledge
+                                                         : options.out);
+  EpisodeResult result = RunEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths));
+  const auto versions = Versions();
+  for (const auto& [part, version] : versions) {
+    result.recording.header["version." + part] = version;
+  }
+  WriteRecording(result.recording, out + "/trace.h5");
+  const std::string json = ResultJson(result, problem.scenario, versions);
+  WriteTextFile(out + "/result.json", json);
+  if (options.json) {
+    std::fputs(json.c_str(), stdout);
+  } else {
+    PrintSummary(result, out);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void AddRunCommand(CommandLine& line) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* const run = line.app.add_subcommand(
+      "run", "Run one closed-loop episode headless; write result.json and trace.h5");
+  Overrides& overrides = options->overrides;
+  run->add_option("SCENARIO", options->scenario, "A name (see `sidestep list`) or a path")
+      ->required();
+  run->add_option("--knowledge", overrides.knowledge,
+                  "What the planner is told: static, execute_and_update, prediction, "
+                  "full_knowledge");
+  run->add_option("--predictor", overrides.predictor, "How objects are extrapolated");
+  run->add_option("--speed", overrides.speed_m_s, "Speed of every moving obstacle [m/s]")
+      ->check(CLI::Range(0.0, 100.0));
+  run->add_option("--seed", overrides.seed, "Seed of everything random")
+      ->check(CLI::Range(0, 2147483647));
+  run->add_option("--latency-ms", overrides.latency_ms,
+                  "Episode time charged to each planning cycle [ms]")
+      ->check(CLI::Range(0.0, 60000.0));
+  run->add_option("--epsilon", overrides.epsilon_m, "Safety margin of the obstacle cost [m]")
+      ->check(CLI::Range(0.0, 10.0));
+  run->add_option("--out", options->out, "Folder for the results [out/SCENARIO/KNOWLEDGE]");
+  run->add_flag("--json", options->json, "Print result.json instead of the summary");
+  run->callback([&line, options] { line.exit_code = Run(*options); });
+}
+
+}  // namespace sidestep

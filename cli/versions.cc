@@ -1,0 +1,40 @@
+#include "cli/versions.h"
+
+#include <gnu/libc-version.h>
+
+#include "cli/build_info.h"  // made by CMake
+#include "core/recording.h"
+#include "planner/registry.h"
+#include "sim/mujoco_model.h"
+
+namespace sidestep {
+namespace {
+
+// glibc chooses among variants of sin, cos and exp by these, and they differ in the last bit.
+std::string CpuFeatures() {
+  std::string features = "x86-64";
+  if (__builtin_cpu_supports("avx2")) features += " avx2";
+  if (__builtin_cpu_supports("fma")) features += " fma";
+  if (__builtin_cpu_supports("avx512f")) features += " avx512f";
+  return features;
+}
+
+}  // namespace
+
+std::string VersionText() { return std::string("sidestep ") + kVersion + " (" + kCommit + ")"; }
+
+std::map<std::string, std::string> Versions() {
+  return {
+      {"sidestep", kVersion},
+      {"commit", kCommit},
+      {"build_type", kBuildType},
+      {"compiler", kCompiler},
+      {"mujoco", MujocoVersion()},
+      {"ceres", CeresVersion()},
+      {"hdf5", Hdf5Version()},
+      {"c_library", std::string("glibc ") + gnu_get_libc_version()},
+      {"cpu_features", CpuFeatures()},
+  };
+}
+
+}  // namespace sidestep

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+namespace sidestep {
+
+/// "sidestep 0.1.0 (abcdef123456)".
+std::string VersionText();
+
+/// What decides the bits of a run, beside its scenario: versions of the code, the compiler and the
+/// libraries, and the variant of the C library that this CPU gets.
+std::map<std::string, std::string> Versions();
+
+}  // namespace sidestep

@@ -1,0 +1,106 @@
+#include "cli/wiring.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "bench/resolve.h"
+#include "core/input_error.h"
+#include "planner/registry.h"
+#include "sdf/prediction/registry.h"
+#include "sdf/world_model.h"
+#include "sim/sensors.h"
+#include "sim/simulation.h"
+
+namespace sidestep {
+namespace {
+
+void Override(Scenario& scenario, const Overrides& overrides) {
+  if (overrides.knowledge) scenario.knowledge = *overrides.knowledge;
+  if (overrides.predictor) scenario.predictor = *overrides.predictor;
+  if (overrides.seed) scenario.seed = static_cast<std::uint64_t>(*overrides.seed);
+  if (overrides.latency_ms) scenario.latency_s = *overrides.latency_ms / 1e3;
+  if (overrides.epsilon_m) scenario.epsilon_m = *overrides.epsilon_m;
+  if (overrides.speed_m_s) {
+    if (scenario.moving_obstacles.empty()) {
+      throw InputError("--speed", "this scenario has no moving obstacle");
+    }
+    for (MovingObstacle& obstacle : scenario.moving_obstacles) {
+      std::visit([&](auto& motion) { motion.speed_m_s = *overrides.speed_m_s; }, obstacle.motion);
+    }
+  }
+  if (scenario.latency_s > scenario.horizon_s) {
+    throw InputError("--latency-ms", "must not exceed the horizon");
+  }
+}
+
+std::vector<std::string> KnowledgeWords() {
+  std::vector<std::string> words;
+  for (const Knowledge knowledge : kAllKnowledge) words.push_back(ToString(knowledge));
+  return words;
+}
+
+// Complains about `word` where it was written: the flag if there was one, else the file's line.
+void CheckWord(const Scenario& scenario, const std::string& key, const std::string& word,
+               const std::vector<std::string>& known, const char* flag = nullptr) {
+  if (std::find(known.begin(), known.end(), word) != known.end()) return;
+  std::string list;
+  for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+  const std::string why = "must be one of " + list + ", is '" + word + "'";
+  if (flag != nullptr) throw InputError(flag, why);
+  throw InputError(scenario.file, scenario.lines.at(key), key, why);
+}
+
+std::vector<std::string> ModelNames(const std::string& models, const std::string& file_suffix) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(models, error)) {
+    const std::string name = entry.path().filename().string();
+    const std::string file = file_suffix == ".xml" ? name + ".xml" : file_suffix;
+    if (std::filesystem::exists(entry.path() / file)) names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace
+
+Problem LoadProblem(const std::string& name, const Overrides& overrides, const DataPaths& paths) {
+  Scenario scenario = LoadScenario(FindScenario(name, paths));
+  Override(scenario, overrides);
+  CheckWord(scenario, "knowledge", scenario.knowledge, KnowledgeWords(),
+            overrides.knowledge ? "--knowledge" : nullptr);
+  CheckWord(scenario, "predictor", scenario.predictor, PredictorNames(),
+            overrides.predictor ? "--predictor" : nullptr);
+  CheckWord(scenario, "planner.name", scenario.planner, PlannerNames());
+  CheckWord(scenario, "sensor.name", scenario.sensor, SensorNames());
+  CheckWord(scenario, "robot.model", scenario.robot, ModelNames(paths.models, "robot.yaml"));
+  for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
+    const std::string& appearance = scenario.moving_obstacles[i].appearance;
+    if (appearance.empty()) continue;
+    CheckWord(scenario, "moving_obstacles[" + std::to_string(i) + "].appearance", appearance,
+              ModelNames(paths.models, ".xml"));
+  }
+  RobotModel robot = RobotModel::Load(paths.models, scenario.robot, scenario.X_WB);
+  ResolveTask(scenario, robot);
+  return {std::move(scenario), std::move(robot)};
+}
+
+WorldFactory SimulatedWorlds(const DataPaths& paths) {
+  return [models = paths.models](const Scenario& scenario, const RobotModel& robot) {
+    auto simulation = std::make_shared<Simulation>(scenario, robot, models);
+    EpisodeWorld world;
+    world.robot = &simulation->robot();
+    world.sensor = &simulation->sensor();
+    world.truth = &simulation->truth();
+    world.model_xml = simulation->model_xml();
+    world.joints = robot.joint_names();
+    for (const MovingObstacle& obstacle : scenario.moving_obstacles) {
+      world.obstacles.push_back(obstacle.name);
+    }
+    world.owner = std::move(simulation);
+    return world;
+  };
+}
+
+}  // namespace sidestep

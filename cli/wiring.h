@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "bench/episode.h"
+#include "cli/data_paths.h"
+#include "robot/robot_model.h"
+#include "scenarios/scenario.h"
+
+namespace sidestep {
+
+/// What the command line may change of a scenario.
+struct Overrides {
+  std::optional<std::string> knowledge, predictor;
+  std::optional<double> speed_m_s;  ///< of every moving obstacle
+  std::optional<int> seed;
+  std::optional<double> latency_ms, epsilon_m;
+};
+
+/// A scenario that is ready to run, and its robot.
+struct Problem {
+  Scenario scenario;
+  RobotModel robot;
+};
+
+/// Reads, overrides, loads the robot and judges everything that a person wrote, every name too.
+/// @throws InputError.
+Problem LoadProblem(const std::string& scenario, const Overrides& overrides,
+                    const DataPaths& paths);
+
+/// Simulated worlds.
+WorldFactory SimulatedWorlds(const DataPaths& paths);
+
+}  // namespace sidestep

@@ -1,0 +1,102 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "bench/metrics/registry.h"
+
+namespace sidestep {
+namespace {
+
+// One joint goes from 0 to 1 rad in 1 s by the cubic q = 3t^2 - 2t^3 (rest to rest, constant jerk
+// -12), is told so exactly, lags by 1 mrad, and rests for another half second.
+Recording SmoothReach() {
+  Recording recording;
+  recording.q_start = Eigen::VectorXd::Zero(1);
+  recording.q_goal = Eigen::VectorXd::Ones(1);
+  recording.v_max = Eigen::VectorXd::Constant(1, 2.0);
+  for (int i = 0; i <= 1500; ++i) {
+    const double t = 1e-3 * i, s = std::min(t, 1.0);
+    ControlSample tick;
+    tick.t = EpisodeTime(t);
+    tick.q_command = Eigen::VectorXd::Constant(1, 3 * s * s - 2 * s * s * s);
+    tick.v_command = Eigen::VectorXd::Constant(1, 6 * s - 6 * s * s);
+    tick.a_command = Eigen::VectorXd::Constant(1, t < 1.0 ? 6 - 12 * t : 0);
+    tick.q = tick.q_command - Eigen::VectorXd::Constant(1, 1e-3);
+    tick.v = tick.v_command;
+    tick.torque = Eigen::VectorXd::Zero(1);
+    recording.control.push_back(tick);
+  }
+  for (int i = 1; i <= 150; ++i) {
+    TruthSample sample;
+    sample.t = EpisodeTime(0.01 * i);
+    sample.clearance_m = 0.2 - 0.001 * i;
+    if (i == 120 || i == 121) {
+      sample.in_contact = true;
+      sample.contact_s = 0.01 * i - 0.003;
+    }
+    recording.truth.push_back(sample);
+  }
+  recording.cycles.resize(3);
+  recording.cycles[1].accepted = true;
+  return recording;
+}
+
+const Metric& Find(const std::string& name) {
+  for (const Metric& metric : Metrics()) {
+    if (name == metric.name) return metric;
+  }
+  throw std::invalid_argument("no metric " + name);
+}
+
+struct Expected {
+  const char* metric;
+  double value, tolerance;
+};
+std::ostream& operator<<(std::ostream& stream, const Expected& e) { return stream << e.metric; }
+
+class EveryMetric : public ::testing::TestWithParam<Expected> {};
+
+TEST_P(EveryMetric, IsRightOnAMotionWithAKnownAnswer) {
+  const Expected& expected = GetParam();
+  EXPECT_NEAR(Find(expected.metric).compute(SmoothReach()), expected.value, expected.tolerance);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Known, EveryMetric,
+    ::testing::Values(
+        Expected{"first_contact_s", 1.197, 1e-12}, Expected{"min_clearance_m", 0.05, 1e-12},
+        // Within 0.02 rad and 0.05 rad/s: the speed decides, 6t - 6t^2 = 0.05 at t = 0.99159.
+        Expected{"time_to_goal_s", 0.992, 1e-9}, Expected{"goal_error_rad", 1e-3, 1e-12},
+        // The integral of a^2 / 2 over the second, 6, is what the cubic's GP cost is.
+        Expected{"gp_cost", 6, 1e-6}, Expected{"jerk_rms", 12, 1e-6},
+        Expected{"tracking_error_rad", 1e-3, 1e-12}, Expected{"velocity_use", 0.75, 1e-12},
+        Expected{"replans", 3, 0}, Expected{"plans_accepted", 1, 0}),
+    [](const auto& test) { return std::string(test.param.metric); });
+
+TEST(Metrics, AllHaveAKnownAnswerHere) {
+  // A metric that is added wants a row above.
+  EXPECT_EQ(Metrics().size(), 10u);
+}
+
+TEST(Metrics, OfAnEmptyRecordingAreZeroOrNotANumberAndNeverThrow) {
+  for (const Metric& metric : Metrics()) {
+    const double value = metric.compute(Recording());
+    EXPECT_TRUE(std::isnan(value) || value == 0) << metric.name << " is " << value;
+  }
+}
+
+TEST(Metrics, HaveNamesThatEndInTheirUnit) {
+  const std::map<std::string, std::string> suffixes = {{"s", "_s"}, {"m", "_m"}, {"rad", "_rad"}};
+  for (const Metric& metric : Metrics()) {
+    const auto suffix = suffixes.find(metric.unit);
+    if (suffix != suffixes.end()) {
+      EXPECT_THAT(metric.name, ::testing::EndsWith(suffix->second));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sidestep

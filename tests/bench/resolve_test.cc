@@ -1,0 +1,83 @@
+#include "bench/resolve.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/input_error.h"
+
+namespace sidestep {
+namespace {
+
+const std::string kSource = SIDESTEP_SOURCE_DIR;
+
+Scenario Walkway() { return LoadScenario(kSource + "/scenarios/hsr_walkway.yaml"); }
+
+RobotModel RobotOf(const Scenario& scenario) {
+  return RobotModel::Load(kSource + "/models", scenario.robot, scenario.X_WB);
+}
+
+std::string Complaint(Scenario scenario) {
+  const RobotModel robot = RobotOf(scenario);
+  try {
+    ResolveTask(scenario, robot);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "was accepted";
+}
+
+TEST(ResolveTask, LooksUpNamedConfigurations) {
+  Scenario scenario = Walkway();
+  const RobotModel robot = RobotOf(scenario);
+  ResolveTask(scenario, robot);
+  Eigen::VectorXd right_ready(7), table_forward(7);
+  right_ready << -1.57, -0.785, 0, -2.356, 0, 1.57, 0.785;
+  table_forward << 0, 0.94, -0.07, -1.27, 0.07, 2.21, 0.70;
+  EXPECT_EQ(scenario.q_start, right_ready);
+  EXPECT_EQ(scenario.q_goal, table_forward);
+}
+
+TEST(ResolveTask, LetsTheRobotStandOnItsMount) {
+  // The Panda's lowest sphere reaches into the table below it; without a mount that is an error.
+  Scenario scenario = Walkway();
+  EXPECT_EQ(Complaint(scenario), "was accepted");
+  scenario.mount = "";
+  EXPECT_THAT(Complaint(scenario), ::testing::HasSubstr("inside 'near_table'"));
+}
+
+TEST(ResolveTask, RefusesAnUnknownNameAndListsTheKnownOnes) {
+  Scenario scenario = Walkway();
+  scenario.goal_name = "table_fwd";
+  EXPECT_THAT(
+      Complaint(scenario),
+      ::testing::AllOf(::testing::HasSubstr("hsr_walkway.yaml:14: task.goal: 'table_fwd' is "
+                                            "no configuration of panda (known: "),
+                       ::testing::HasSubstr("table_forward")));
+}
+
+TEST(ResolveTask, RefusesTheWrongNumberOfJoints) {
+  Scenario scenario = Walkway();
+  scenario.start_name = "";
+  scenario.q_start = Eigen::VectorXd::Zero(6);
+  EXPECT_THAT(Complaint(scenario),
+              ::testing::EndsWith("task.start: must have 7 joint positions, has 6"));
+}
+
+TEST(ResolveTask, RefusesAJointOutsideItsLimits) {
+  Scenario scenario = Walkway();
+  scenario.goal_name = "";
+  scenario.q_goal = Eigen::VectorXd::Zero(7);  // a Panda's joint 4 stays below -0.0698
+  EXPECT_THAT(Complaint(scenario), ::testing::HasSubstr("task.goal: "));
+  EXPECT_THAT(Complaint(scenario),
+              ::testing::EndsWith("= 0.0000 rad is outside its limits [-3.0718, -0.0698]"));
+}
+
+TEST(ResolveTask, RefusesAStartInsideAnObstacle) {
+  Scenario scenario = Walkway();
+  std::get<LinearMotion>(scenario.moving_obstacles[0].motion).start_m = {0, -0.3, 0.9};
+  EXPECT_THAT(Complaint(scenario), ::testing::AllOf(::testing::HasSubstr("task.start: the robot's"),
+                                                    ::testing::EndsWith("inside 'hsr'")));
+}
+
+}  // namespace
+}  // namespace sidestep

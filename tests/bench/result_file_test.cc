@@ -1,0 +1,81 @@
+#include "bench/result_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "bench/metrics/registry.h"
+#include "core/input_error.h"
+
+namespace sidestep {
+namespace {
+
+EpisodeResult SomeResult() {
+  EpisodeResult result;
+  result.outcome = Outcome::kCollision;
+  for (const Metric& metric : Metrics()) result.recording.metrics[metric.name] = 1.5;
+  result.recording.metrics["time_to_goal_s"] = std::numeric_limits<double>::quiet_NaN();
+  result.times["cycle"] = {0.001, 0.002, 0.010};
+  result.wall_s = 3;
+  return result;
+}
+
+Scenario SomeScenario() { return LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/hsr_walkway.yaml"); }
+
+class ResultFile : public ::testing::Test {
+ protected:
+  const std::string path_ = (std::filesystem::path(::testing::TempDir()) / "sidestep_result.json");
+  void TearDown() override { std::filesystem::remove(path_); }
+
+  std::string Complaint() const {
+    try {
+      ReadResult(path_);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "was accepted";
+  }
+};
+
+TEST_F(ResultFile, IsReadBackAsItWasWritten) {
+  WriteTextFile(path_, ResultJson(SomeResult(), SomeScenario(), {{"mujoco", "2.2.2"}}));
+  const ResultSummary summary = ReadResult(path_);
+  EXPECT_EQ(summary.outcome, "collision");
+  EXPECT_EQ(summary.knowledge, "prediction");
+  EXPECT_EQ(summary.metrics.at("gp_cost"), 1.5);
+  EXPECT_TRUE(std::isnan(summary.metrics.at("time_to_goal_s")));
+  EXPECT_DOUBLE_EQ(summary.cycle_p50_ms, 2);
+}
+
+TEST_F(ResultFile, KeepsEverythingThatMayDifferUnderOneKey) {
+  EpisodeResult slow = SomeResult();
+  slow.wall_s = 30;
+  slow.times["cycle"] = {1, 2, 3};
+  auto a = nlohmann::json::parse(ResultJson(SomeResult(), SomeScenario(), {}));
+  auto b = nlohmann::json::parse(ResultJson(slow, SomeScenario(), {}));
+  EXPECT_NE(a, b);
+  a.erase("wall_clock");
+  b.erase("wall_clock");
+  EXPECT_EQ(a, b);
+}
+
+TEST_F(ResultFile, OfAnotherKindIsRefused) {
+  EXPECT_EQ(Complaint(), path_ + ": no such file, or it cannot be read");
+  for (const char* const text : {"", "{", "[]", "{\"format\": 3}", "{\"format\": \"other\"}"}) {
+    WriteTextFile(path_, text);
+    EXPECT_EQ(Complaint(), path_ + ": is not a result.json of sidestep") << text;
+  }
+  WriteTextFile(path_, "{\"format\": \"sidestep-result-1\"}");
+  EXPECT_THAT(Complaint(), ::testing::StartsWith(path_ + ": is not a whole result: "));
+}
+
+TEST_F(ResultFile, LeavesNothingBehindWhereItCannotBeWritten) {
+  EXPECT_THROW(WriteTextFile("/nowhere/result.json", "{}"), InputError);
+}
+
+}  // namespace
+}  // namespace sidestep
