@@ -44,7 +44,10 @@ GpProblem::GpProblem(const RobotModel& robot, const PlanRequest& request, const 
   }
 
   if (options.sigma_fixed) {
-    for (int k = 0; k < request.num_fixed; ++k) {
+    AddTerm(
+        std::make_unique<StatePriorCost>(request.q_start, request.v_start, *options.sigma_fixed), 0,
+        &PlanCost::goal);
+    for (int k = 1; k < request.num_fixed; ++k) {
       AddTerm(std::make_unique<StatePriorCost>(initial.q.col(k), initial.v.col(k),
                                                *options.sigma_fixed),
               k, &PlanCost::goal);

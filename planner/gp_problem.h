@@ -23,7 +23,8 @@ struct GpProblemOptions {
   double qc = 1;
   double sigma_goal = 1e-4;
   /// Without it, fixed states are constants. With it they are free, and priors of this sigma draw
-  /// them to their values: the published formulation.
+  /// state 0 to the request's start and the others to the initial motion: the published
+  /// formulation.
   std::optional<double> sigma_fixed;
 };
 
