@@ -3,6 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -101,13 +102,23 @@ struct YamlReader::Node {
   YAML::Node Find(const std::string& key) const {
     known.insert(key);
     for (const auto& entry : yaml) {
-      if (entry.first.IsScalar() && entry.first.Scalar() == key) return entry.second;
+      if (entry.first.Scalar() == key) return entry.second;
     }
     return YAML::Node(YAML::NodeType::Undefined);
   }
+  // The line of `key`, or of the list in which `key`, "list[3]", is an item; else of this map.
+  int LineOfKey(const std::string& key) const {
+    const std::string name = key.substr(0, key.find('['));
+    for (const auto& entry : yaml) {
+      if (entry.first.Scalar() == name) return LineOf(entry.first, line);
+    }
+    return line;
+  }
   [[noreturn]] void FailAt(const YAML::Node& at, const std::string& key,
                            const std::string& why) const {
-    throw InputError(file, at.IsDefined() ? LineOf(at, line) : line, PathOf(key), why);
+    // The mark of an empty value is where the next thing begins: often a line too far down.
+    const bool marked = at.IsDefined() && !at.IsNull();
+    throw InputError(file, marked ? LineOf(at, line) : LineOfKey(key), PathOf(key), why);
   }
   YAML::Node Require(const std::string& key) const {
     const YAML::Node node = Find(key);
@@ -123,9 +134,12 @@ struct YamlReader::Node {
     if (!node.IsScalar()) FailAt(node, key, "must be a number, is " + Describe(node));
     double value = 0;
     const std::string& text = node.Scalar();
-    try {
-      value = node.as<double>();
-    } catch (const YAML::Exception&) {
+    if (!YAML::convert<double>::decode(node, value)) {
+      double ignored = 0;
+      const auto parsed = std::from_chars(text.data(), text.data() + text.size(), ignored);
+      if (parsed.ec == std::errc::result_out_of_range) {
+        FailAt(node, key, "is out of range: " + text);
+      }
       FailAt(node, key, "must be a number, is '" + text + "'");
     }
     if (!std::isfinite(value)) FailAt(node, key, "must be finite, is " + text);
@@ -137,7 +151,7 @@ struct YamlReader::Node {
     child->yaml = node;
     child->file = file;
     child->path = PathOf(key);
-    child->line = LineOf(node, line);
+    child->line = LineOf(node, line);  // of its first key
     child->CheckKeys();
     return child;
   }
@@ -170,14 +184,18 @@ YamlReader YamlReader::FromText(const std::string& text, const std::string& name
   auto node = std::make_unique<Node>();
   node->file = name;
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    // The mark that ends a document turns a quote that nobody closed into an error. Without it
+    // yaml-cpp takes the rest of the file for the quoted word.
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text + "\n...\n");
     if (documents.empty() || documents[0].IsNull()) throw InputError(name, 1, "", "is empty");
     if (documents.size() > 1) {
       throw InputError(name, Node::LineOf(documents[1], 1), "", "holds more than one document");
     }
     node->yaml = documents[0];
   } catch (const YAML::Exception& error) {
-    throw InputError(name, error.mark.line + 1, "", "is not valid YAML: " + error.msg);
+    const bool open_quote = error.msg == YAML::ErrorMsg::DOC_IN_SCALAR;
+    throw InputError(name, error.mark.line + 1, "",
+                     open_quote ? "a quote is not closed" : "is not valid YAML: " + error.msg);
   }
   if (!node->yaml.IsMap()) {
     throw InputError(name, 1, "", "must be a map of keys, is " + Describe(node->yaml));
