@@ -1,0 +1,46 @@
+#include "sim/picture.h"
+
+#include "core/input_error.h"
+#include "sim/mujoco_model.h"
+#include "sim/mujoco_pose.h"
+
+namespace sidestep {
+namespace {
+
+std::string TypeName(int type, const std::string& name) {
+  switch (type) {
+    case mjGEOM_SPHERE:
+      return "sphere";
+    case mjGEOM_CAPSULE:
+      return "capsule";
+    case mjGEOM_ELLIPSOID:
+      return "ellipsoid";
+    case mjGEOM_CYLINDER:
+      return "cylinder";
+    case mjGEOM_BOX:
+      return "box";
+    default:
+      throw InputError(name, "a body to be drawn must be made of primitives");
+  }
+}
+
+}  // namespace
+
+std::vector<PictureGeom> PictureOf(const std::string& xml, const std::string& name) {
+  constexpr int kLastGroupDrawn = 2;
+  const MujocoModelPtr model = LoadMujocoModel(xml, name);
+  const MujocoDataPtr data = MakeMujocoData(*model);
+  mj_kinematics(model.get(), data.get());
+  std::vector<PictureGeom> picture;
+  for (int i = 0; i < model->ngeom; ++i) {
+    if (model->geom_group[i] > kLastGroupDrawn || model->geom_type[i] == mjGEOM_PLANE) continue;
+    const int material = model->geom_matid[i];
+    const float* rgba = material >= 0 ? model->mat_rgba + 4 * material : model->geom_rgba + 4 * i;
+    picture.push_back({TypeName(model->geom_type[i], name),
+                       Eigen::Map<const Eigen::Vector3d>(model->geom_size + 3 * i),
+                       GeomPose(*data, i), Eigen::Map<const Eigen::Vector4f>(rgba)});
+  }
+  return picture;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "core/pose.h"
+
+namespace sidestep {
+
+/// One primitive of a picture: something to look at, of no other effect.
+struct PictureGeom {
+  std::string type;      ///< MJCF's word for it
+  Eigen::Vector3d size;  ///< as MJCF has it
+  Pose X_AG;             ///< in the model's own frame
+  Eigen::Vector4f rgba;
+};
+
+/// What MuJoCo draws by default of a model (geoms of groups 0 to 2) at its reference pose, planes
+/// left out.
+/// @param xml MJCF that refers to no file; `name` stands for it in messages.
+/// @throws InputError if it is not a model, or draws a mesh or a height field.
+std::vector<PictureGeom> PictureOf(const std::string& xml, const std::string& name);
+
+}  // namespace sidestep

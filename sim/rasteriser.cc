@@ -1,0 +1,204 @@
+#include "sim/rasteriser.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "sim/mujoco_pose.h"
+#include "sim/world_geoms.h"
+
+namespace sidestep {
+namespace {
+
+constexpr double kOn = Rasteriser::kOnSurface_m;
+constexpr double kOnCoarse = Rasteriser::kOnCoarseSurface_m;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool InHalfOpen(double x, double half) { return x >= -half - kOn && x < half - kOn; }
+
+bool BelongsToSolid(const Eigen::Vector3d& face_normal) {
+  constexpr double kZero = 1e-5;  // the vertices are of single precision
+  for (const int axis : {2, 1, 0}) {
+    if (std::abs(face_normal(axis)) > kZero) return face_normal(axis) < 0;
+  }
+  return false;
+}
+
+struct CellRange {
+  std::array<int, 3> first, last;  // inclusive; empty if last < first
+};
+
+// The cells whose centres may lie in a box of the geom's frame.
+CellRange CellsAround(const Eigen::Matrix3d& R_WG, const Eigen::Vector3d& p_WG,
+                      const Eigen::Vector3d& lower, const Eigen::Vector3d& upper,
+                      const GridSpec& spec) {
+  CellRange range;
+  for (int a = 0; a < 3; ++a) {
+    double low = p_WG(a), high = p_WG(a);
+    for (int b = 0; b < 3; ++b) {
+      const double end1 = R_WG(a, b) * lower(b), end2 = R_WG(a, b) * upper(b);
+      if (R_WG(a, b) == 0) continue;  // 0 times infinity
+      low += std::min(end1, end2);
+      high += std::max(end1, end2);
+    }
+    constexpr double kSlack = 1e-6;  // of a cell; the exact test follows
+    const auto i = static_cast<std::size_t>(a);
+    const double end = spec.size[i] - 1;
+    const double first = std::ceil((low - spec.first_center_m(a)) / spec.cell_m - kSlack);
+    const double last = std::floor((high - spec.first_center_m(a)) / spec.cell_m + kSlack);
+    range.first[i] = static_cast<int>(std::clamp(first, 0.0, end + 1));
+    range.last[i] = static_cast<int>(std::clamp(last, -1.0, end));
+  }
+  return range;
+}
+
+// Fills the cells of a range whose centres, in the geom's frame, are inside.
+template <typename Inside>
+std::vector<std::size_t> FillWhere(const CellRange& range, const Eigen::Matrix3d& R_WG,
+                                   const Eigen::Vector3d& p_WG, OccupancyGrid* grid,
+                                   const Inside& inside) {
+  std::vector<std::size_t> filled;
+  const GridSpec& spec = grid->spec;
+  const Eigen::Matrix3d R_GW = R_WG.transpose();
+  for (int k = range.first[2]; k <= range.last[2]; ++k) {
+    for (int j = range.first[1]; j <= range.last[1]; ++j) {
+      for (int i = range.first[0]; i <= range.last[0]; ++i) {
+        const std::size_t cell = spec.Index(i, j, k);
+        if (grid->cells[cell] != 0 || !inside(R_GW * (spec.Center(i, j, k) - p_WG))) continue;
+        grid->cells[cell] = 1;
+        filled.push_back(cell);
+      }
+    }
+  }
+  return filled;
+}
+
+}  // namespace
+
+Rasteriser::Rasteriser(const mjModel& model) : model_(model) {
+  for (int i = 0; i < model.ngeom; ++i) solids_.push_back(MakeSolid(model, i));
+}
+
+Rasteriser::Solid Rasteriser::MakeSolid(const mjModel& model, int geom) {
+  Solid solid;
+  const Eigen::Map<const Eigen::Vector3d> size(model.geom_size + 3 * geom);
+  const auto set_half_extents = [&](double x, double y, double z) {
+    solid.upper_m = {x, y, z};
+    solid.lower_m = -solid.upper_m;
+  };
+  switch (model.geom_type[geom]) {
+    case mjGEOM_PLANE:
+      set_half_extents(kInfinity, kInfinity, kInfinity);
+      solid.upper_m.z() = 0;
+      break;
+    case mjGEOM_HFIELD: {
+      solid.height_field.emplace(model, model.geom_dataid[geom]);
+      const Eigen::Vector2d& half = solid.height_field->half_size_m();
+      solid.lower_m = {-half.x(), -half.y(), solid.height_field->base_m()};
+      solid.upper_m = {half.x(), half.y(), solid.height_field->top_m()};
+      break;
+    }
+    case mjGEOM_SPHERE:
+      set_half_extents(size(0), size(0), size(0));
+      break;
+    case mjGEOM_CAPSULE:
+      set_half_extents(size(0), size(0), size(0) + size(1));
+      break;
+    case mjGEOM_CYLINDER:
+      set_half_extents(size(0), size(0), size(1));
+      break;
+    case mjGEOM_MESH: {
+      if (model.geom_contype[geom] == 0 && model.geom_conaffinity[geom] == 0) break;  // a picture
+      const ConvexHull hull = HullOfMesh(model, model.geom_dataid[geom]);
+      solid.lower_m = solid.upper_m = hull.vertices.front();
+      for (const Eigen::Vector3d& vertex : hull.vertices) {
+        solid.lower_m = solid.lower_m.cwiseMin(vertex);
+        solid.upper_m = solid.upper_m.cwiseMax(vertex);
+      }
+      for (const std::array<int, 3>& face : hull.faces) {
+        const auto vertex = [&](std::size_t i) {
+          return hull.vertices[static_cast<std::size_t>(face[i])];
+        };
+        const Eigen::Vector3d across = (vertex(1) - vertex(0)).cross(vertex(2) - vertex(0));
+        if (!(across.norm() > 0)) continue;
+        const Eigen::Vector3d normal = across.normalized();
+        // The vertices are of single precision, so the plane of a sliver may be askew and cut into
+        // the hull; its neighbours bound the same flat face better.
+        const double offset = normal.dot(vertex(0));
+        const bool supports =
+            std::all_of(hull.vertices.begin(), hull.vertices.end(),
+                        [&](const auto& v) { return normal.dot(v) <= offset + kOnCoarse; });
+        if (supports) solid.faces.push_back({normal, offset});
+      }
+      break;
+    }
+    default:  // box, ellipsoid
+      set_half_extents(size(0), size(1), size(2));
+  }
+  return solid;
+}
+
+std::vector<std::size_t> Rasteriser::Fill(const mjData& data, int geom, OccupancyGrid* grid) const {
+  const Solid& solid = solids_[static_cast<std::size_t>(geom)];
+  const Eigen::Vector3d size = Eigen::Map<const Eigen::Vector3d>(model_.geom_size + 3 * geom);
+  const Eigen::Matrix3d R_WG = GeomRotation(data, geom);
+  const Eigen::Vector3d p_WG = GeomPosition(data, geom);
+  const CellRange range = CellsAround(R_WG, p_WG, solid.lower_m, solid.upper_m, grid->spec);
+  const auto fill_where = [&](const auto& inside) {
+    return FillWhere(range, R_WG, p_WG, grid, inside);
+  };
+  using Point = Eigen::Vector3d;
+  switch (model_.geom_type[geom]) {
+    case mjGEOM_PLANE:
+      return fill_where([](const Point& p) { return p.z() < -kOn; });
+    case mjGEOM_HFIELD:
+      return fill_where([&](const Point& p) {
+        const HeightField& field = *solid.height_field;
+        return InHalfOpen(p.x(), field.half_size_m().x()) &&
+               InHalfOpen(p.y(), field.half_size_m().y()) && p.z() >= field.base_m() - kOn &&
+               p.z() < field.HeightAt(p.x(), p.y()) - kOnCoarse;
+      });
+    case mjGEOM_SPHERE:
+      return fill_where([&](const Point& p) { return p.norm() < size(0) - kOn; });
+    case mjGEOM_CAPSULE:
+      return fill_where([&](const Point& p) {
+        const double z = p.z() - std::clamp(p.z(), -size(1), size(1));
+        return std::hypot(p.x(), p.y(), z) < size(0) - kOn;
+      });
+    case mjGEOM_ELLIPSOID:
+      return fill_where(
+          [&](const Point& p) { return p.cwiseQuotient(size).norm() < 1 - kOn / size.minCoeff(); });
+    case mjGEOM_CYLINDER:
+      return fill_where([&](const Point& p) {
+        return InHalfOpen(p.z(), size(1)) && p.head<2>().norm() < size(0) - kOn;
+      });
+    case mjGEOM_BOX:
+      return fill_where([&](const Point& p) {
+        return InHalfOpen(p.x(), size(0)) && InHalfOpen(p.y(), size(1)) &&
+               InHalfOpen(p.z(), size(2));
+      });
+    case mjGEOM_MESH:
+      return fill_where([&](const Point& p) {
+        return std::all_of(solid.faces.begin(), solid.faces.end(), [&](const HalfSpace& face) {
+          const double height = face.normal.dot(p) - face.offset_m;
+          return height < -kOnCoarse || (height <= kOnCoarse && BelongsToSolid(face.normal));
+        });
+      });
+    default:
+      return {};
+  }
+}
+
+OccupancyGrid RasteriseWorld(const mjModel& model, const mjData& data, const GridSpec& spec) {
+  OccupancyGrid grid(spec);
+  const Rasteriser rasteriser(model);
+  const WorldGeoms geoms = FindWorldGeoms(model);
+  for (const std::vector<int>* solids : {&geoms.fixed, &geoms.moving}) {
+    for (const int geom : *solids) rasteriser.Fill(data, geom, &grid);
+  }
+  return grid;
+}
+
+}  // namespace sidestep

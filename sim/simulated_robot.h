@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "control/tracker.h"
+#include "robot/robot_interface.h"
+#include "robot/robot_model.h"
+#include "sim/world.h"
+
+namespace sidestep {
+
+/// The simulated arm, and with AdvanceTo the clock of its world. In each tick of 1 ms:
+///   command = tracker(trajectory), within the robot's limits (control/tracker.h);
+///   torque  = K (q_command - q) + D (v_command - v) + bias, within the motors' limits,
+/// with the stiffness K and damping D of robot.yaml, and gravity and Coriolis forces as the bias.
+/// The robot's inertia and friction are not compensated, so the arm lags as a real one does.
+class SimulatedRobot final : public RobotInterface {
+ public:
+  /// Holds where the world's arm is now.
+  /// @param world is stepped by this; must outlive it.
+  /// @param after_tick called after each tick of the world.
+  /// @throws std::invalid_argument if the robot has not as many joints as the world's arm.
+  SimulatedRobot(const RobotModel& robot, World* world, std::function<void()> after_tick);
+
+  JointState Read() const override;
+  /// As RobotInterface says. What was submitted before for `start` or later is dropped.
+  void Submit(const Trajectory& trajectory, EpisodeTime start) override;
+  void Hold() override;
+  /// Steps to the first tick that is not before `t`.
+  void AdvanceTo(EpisodeTime t) override;
+  /// One sample a tick: command and measurement at its beginning, the torque during it.
+  std::vector<ControlSample> TakeControlLog() override;
+
+ private:
+  struct Motion {
+    Trajectory trajectory;
+    EpisodeTime start;
+  };
+
+  void Tick();
+  TrackerCommand NextCommand();
+
+  World& world_;
+  std::function<void()> after_tick_;
+  Eigen::VectorXd stiffness_, damping_, torque_max_;
+  JerkLimitedTracker tracker_;
+  std::optional<Motion> motion_;  ///< followed now; none: brakes, then rests
+  std::deque<Motion> queue_;      ///< to be followed later, by start
+  std::vector<ControlSample> log_;
+};
+
+}  // namespace sidestep

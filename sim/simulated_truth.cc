@@ -1,0 +1,118 @@
+#include "sim/simulated_truth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sidestep {
+
+SimulatedTruth::SimulatedTruth(const World& world) : world_(world), distance_(world.model()) {
+  const mjModel& model = world.model();
+  const WorldGeoms geoms = FindWorldGeoms(model);
+  for (const int robot_geom : geoms.robot) {
+    const int link = model.geom_bodyid[robot_geom];
+    for (const std::vector<int>* others : {&geoms.floor, &geoms.fixed, &geoms.moving}) {
+      for (const int other_geom : *others) {
+        const int other = model.geom_bodyid[other_geom];
+        const bool never_meet = IsFixed(model, link) && IsFixed(model, other);
+        if (!never_meet && !IsExcluded(model, link, other)) {
+          pairs_.push_back({robot_geom, other_geom});
+        }
+      }
+    }
+  }
+  Observe();
+}
+
+void SimulatedTruth::Observe() {
+  const mjModel& model = world_.model();
+  const mjData& data = world_.data();
+  const Pair* deepest_pair = nullptr;
+  Touch deepest;
+  deepest.depth_m = -1;
+  for (const Pair& pair : pairs_) {
+    if (distance_.LowerBound(data, pair.robot_geom, pair.other_geom) > 0) continue;
+    const auto touch = FindTouch(model, data, pair.robot_geom, pair.other_geom);
+    if (touch && touch->depth_m > deepest.depth_m) {
+      deepest = *touch;
+      deepest_pair = &pair;
+    }
+  }
+  if (deepest_pair != nullptr) {
+    NoteContact(GeomOwner(model, deepest_pair->other_geom), deepest);
+  } else {
+    NoteSelfContact();
+  }
+  if (world_.ticks() % (World::kTicksPerSecond / kSamplesPerSecond) == 0) {
+    MeasureClearance(deepest_pair, deepest.depth_m);
+    pending_.t = world_.time();
+    for (const MovingObstacle& obstacle : world_.obstacles()) {
+      pending_.X_WO.push_back(PoseAt(obstacle, world_.time()));
+    }
+    samples_.push_back(pending_);
+    pending_ = TruthSample();
+  }
+}
+
+void SimulatedTruth::NoteContact(const std::string& object, const Touch& touch) {
+  if (pending_.in_contact) return;  // the first one of the interval is reported
+  pending_.in_contact = true;
+  pending_.contact_s = world_.time().seconds();
+  pending_.contact_object = object;
+  pending_.p_WContact = touch.p_WContact;
+}
+
+void SimulatedTruth::NoteSelfContact() {
+  const mjModel& model = world_.model();
+  const mjData& data = world_.data();
+  for (int i = 0; i < data.ncon; ++i) {
+    const mjContact& contact = data.contact[i];
+    const int root1 = model.body_rootid[model.geom_bodyid[contact.geom1]];
+    const int root2 = model.body_rootid[model.geom_bodyid[contact.geom2]];
+    if (root1 != root2 || contact.exclude != 0 || contact.dist > 0) continue;
+    NoteContact(kSelf, {-contact.dist, Eigen::Map<const Eigen::Vector3d>(contact.pos)});
+  }
+}
+
+void SimulatedTruth::SetClearance(double clearance_m, const Pair& pair) {
+  pending_.clearance_m = clearance_m;
+  pending_.nearest_robot_part = GeomOwner(world_.model(), pair.robot_geom);
+  pending_.nearest_object = GeomOwner(world_.model(), pair.other_geom);
+}
+
+void SimulatedTruth::MeasureClearance(const Pair* deepest_pair, double deepest_m) {
+  if (deepest_pair != nullptr) {
+    SetClearance(-deepest_m, *deepest_pair);
+    return;
+  }
+  const mjData& data = world_.data();
+  std::vector<std::pair<double, const Pair*>> candidates;  // nearest first, by the lower bound
+  for (const Pair& pair : pairs_) {
+    candidates.emplace_back(distance_.LowerBound(data, pair.robot_geom, pair.other_geom), &pair);
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  pending_.clearance_m = std::numeric_limits<double>::infinity();
+  for (const auto& [lower_bound, pair] : candidates) {
+    if (lower_bound >= pending_.clearance_m) break;
+    const double clearance = distance_.Distance(data, pair->robot_geom, pair->other_geom);
+    if (clearance < pending_.clearance_m) SetClearance(clearance, *pair);
+  }
+}
+
+std::vector<ObjectObservation> SimulatedTruth::ObstaclesAt(EpisodeTime t) const {
+  std::vector<ObjectObservation> obstacles;
+  for (const MovingObstacle& obstacle : world_.obstacles()) {
+    ObjectObservation observation;
+    observation.id = obstacle.name;
+    observation.t = t;
+    observation.X_WO = PoseAt(obstacle, t);
+    observation.shape = obstacle.shape;
+    obstacles.push_back(observation);
+  }
+  return obstacles;
+}
+
+std::vector<TruthSample> SimulatedTruth::TakeSamples() { return std::exchange(samples_, {}); }
+
+}  // namespace sidestep

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "robot/world_truth.h"
+#include "sim/geom_distance.h"
+#include "sim/world.h"
+#include "sim/world_geoms.h"
+
+namespace sidestep {
+
+/// The verdict, by geometry: contact at every tick, clearance at 100 Hz (first at time 0).
+///
+/// Judged is every solid of the robot against every other solid: static boxes, floor, moving
+/// obstacles. Left out are pairs of bodies that the model excludes from contact (the links at the
+/// robot's foot and what it stands on), and pairs of which neither can move (the bolted base and
+/// the tables); against a moving obstacle, the base is judged like any link.
+///
+/// A contact of the robot with itself counts as contact, with the object "self", where its model
+/// lets its links touch. It has no part in the clearance, which is to other things.
+class SimulatedTruth final : public WorldTruth {
+ public:
+  static constexpr int kSamplesPerSecond = 100;
+  static constexpr const char* kSelf = "self";
+
+  /// Judges the world as it is now. @param world must outlive this.
+  explicit SimulatedTruth(const World& world);
+
+  /// To be called after each tick of the world.
+  void Observe();
+
+  std::vector<ObjectObservation> ObstaclesAt(EpisodeTime t) const override;
+
+  /// As WorldTruth says. While a pair overlaps, clearance_m is minus the depth of the deepest one.
+  std::vector<TruthSample> TakeSamples() override;
+
+ private:
+  struct Pair {
+    int robot_geom, other_geom;
+  };
+
+  void NoteContact(const std::string& object, const Touch& touch);
+  void NoteSelfContact();
+  void MeasureClearance(const Pair* deepest_pair, double deepest_m);
+  void SetClearance(double clearance_m, const Pair& pair);
+
+  const World& world_;
+  GeomDistance distance_;
+  std::vector<Pair> pairs_;
+  TruthSample pending_;  ///< collects what happens until the next sample
+  std::vector<TruthSample> samples_;
+};
+
+}  // namespace sidestep

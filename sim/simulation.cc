@@ -1,0 +1,37 @@
+#include "sim/simulation.h"
+
+#include "core/input_error.h"
+#include "sim/sensors.h"
+#include "sim/world_xml.h"
+
+namespace sidestep {
+namespace {
+
+Eigen::VectorXd StartOf(const Scenario& scenario, const RobotModel& robot) {
+  if (scenario.q_start.size() > 0) return scenario.q_start;
+  const auto found = robot.configurations().find(scenario.start_name);
+  if (found != robot.configurations().end()) return found->second;
+  const auto line = scenario.lines.find("task.start");
+  throw InputError(scenario.file, line == scenario.lines.end() ? 0 : line->second, "task.start",
+                   robot.name() + " has no configuration '" + scenario.start_name + "'");
+}
+
+std::vector<std::string> NamesOf(const std::vector<MovingObstacle>& obstacles) {
+  std::vector<std::string> names;
+  for (const MovingObstacle& obstacle : obstacles) names.push_back(obstacle.name);
+  return names;
+}
+
+}  // namespace
+
+Simulation::Simulation(const Scenario& scenario, const RobotModel& robot,
+                       const std::string& models_dir)
+    : model_xml_(BuildWorldXml(scenario, robot.mount_links(), models_dir)),
+      joints_(robot.joint_names()),
+      obstacles_(NamesOf(scenario.moving_obstacles)),
+      world_(scenario, model_xml_, joints_, StartOf(scenario, robot)),
+      truth_(world_),
+      robot_(robot, &world_, [this] { truth_.Observe(); }),
+      sensor_(MakeSensor(scenario, world_)) {}
+
+}  // namespace sidestep

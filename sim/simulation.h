@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "robot/robot_interface.h"
+#include "robot/robot_model.h"
+#include "robot/sensor.h"
+#include "robot/world_truth.h"
+#include "scenarios/scenario.h"
+#include "sim/simulated_robot.h"
+#include "sim/simulated_truth.h"
+#include "sim/world.h"
+
+namespace sidestep {
+
+/// Everything simulated of one episode: the world, the robot that moves in it, the sensor that sees
+/// it, and the truth about it, at time 0. One thread at a time; any number of simulations in one
+/// process do not influence each other.
+class Simulation {
+ public:
+  /// @param robot the scenario's, with its base at scenario.X_WB.
+  /// @throws InputError for model files that do not fit, a start that the robot does not have, or
+  ///   an unknown sensor.
+  Simulation(const Scenario& scenario, const RobotModel& robot, const std::string& models_dir);
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  RobotInterface& robot() { return robot_; }
+  Sensor& sensor() { return *sensor_; }
+  WorldTruth& truth() { return truth_; }
+  const World& world() const { return world_; }
+
+  const std::string& model_xml() const { return model_xml_; }         ///< MJCF of the whole world
+  const std::vector<std::string>& joints() const { return joints_; }  ///< as in the MJCF
+  const std::vector<std::string>& obstacles() const { return obstacles_; }  ///< mocap bodies
+
+ private:
+  std::string model_xml_;
+  std::vector<std::string> joints_, obstacles_;
+  World world_;
+  SimulatedTruth truth_;
+  SimulatedRobot robot_;
+  std::unique_ptr<Sensor> sensor_;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,365 @@
+#include "sim/world_xml.h"
+
+#include <tinyxml2.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include "core/input_error.h"
+#include "sim/mujoco_model.h"
+#include "sim/picture.h"
+
+namespace sidestep {
+namespace {
+
+using tinyxml2::XMLDocument;
+using tinyxml2::XMLElement;
+
+// The shortest digits that read back to the same number.
+std::string ToText(double value) {
+  std::array<char, 32> text;
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  return std::string(text.data(), end);
+}
+
+template <typename Vector>
+std::string ToText(const Eigen::MatrixBase<Vector>& values) {
+  std::string text;
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    text += (i > 0 ? " " : "") + ToText(static_cast<double>(values(i)));
+  }
+  return text;
+}
+
+XMLElement* Append(XMLElement* parent, const char* tag) {
+  return parent->InsertNewChildElement(tag);
+}
+
+void Set(XMLElement* element, const char* key, const std::string& value) {
+  element->SetAttribute(key, value.c_str());
+}
+
+void SetPose(XMLElement* element, const Pose& X) {
+  const Eigen::Quaterniond& q = X.rotation();
+  Set(element, "pos", ToText(X.translation()));
+  Set(element, "quat", ToText(Eigen::Vector4d(q.w(), q.x(), q.y(), q.z())));
+}
+
+void SetShape(XMLElement* geom, const Shape& shape) {
+  struct Size {
+    std::string operator()(const Box& box) const { return ToText(box.size_m / 2); }
+    std::string operator()(const Sphere& sphere) const { return ToText(sphere.radius_m); }
+    std::string operator()(const Capsule& capsule) const {
+      return ToText(Eigen::Vector2d(capsule.radius_m, capsule.length_m / 2));
+    }
+    std::string operator()(const Cylinder& cylinder) const {
+      return ToText(Eigen::Vector2d(cylinder.radius_m, cylinder.length_m / 2));
+    }
+    std::string operator()(const Ellipsoid& ellipsoid) const {
+      return ToText(ellipsoid.semi_axes_m);
+    }
+  };
+  Set(geom, "type", ShapeName(shape));
+  Set(geom, "size", std::visit(Size{}, shape));
+}
+
+// The robot's file -----------------------------------------------------------------------------
+
+void CheckRefersToNoFile(const XMLElement& element, const std::string& path) {
+  const bool includes = std::string(element.Name()) == "include";
+  if (includes || element.Attribute("file") != nullptr) {
+    throw InputError(path, element.GetLineNum(), includes ? "include" : "file",
+                     "a model must not refer to other files; build it from primitives");
+  }
+  for (const XMLElement* child = element.FirstChildElement(); child != nullptr;
+       child = child->NextSiblingElement()) {
+    CheckRefersToNoFile(*child, path);
+  }
+}
+
+const XMLElement& LoadModelFile(const std::string& path, XMLDocument* document) {
+  if (document->LoadFile(path.c_str()) != tinyxml2::XML_SUCCESS) {
+    throw InputError(path, document->ErrorLineNum(), "", document->ErrorName());
+  }
+  const XMLElement* root = document->RootElement();
+  if (root == nullptr || std::string(root->Name()) != "mujoco") {
+    throw InputError(path, 1, "", "must be an MJCF file, whose root is <mujoco>");
+  }
+  CheckRefersToNoFile(*root, path);
+  return *root;
+}
+
+void CopyChildren(const XMLElement& from, XMLElement* to) {
+  for (const tinyxml2::XMLNode* child = from.FirstChild(); child != nullptr;
+       child = child->NextSibling()) {
+    if (child->ToComment() == nullptr) to->InsertEndChild(child->DeepClone(to->GetDocument()));
+  }
+}
+
+// Whether MJCF gives this element of a section defaults by its own `class`. (Bodies pass theirs on
+// by `childclass`.)
+bool TakesClass(const std::string& section, const std::string& tag) {
+  if (section == "actuator" || section == "equality" || section == "tendon") return true;
+  return (section == "asset" && (tag == "mesh" || tag == "material")) ||
+         (section == "contact" && tag == "pair");
+}
+
+void MergeRobot(const Scenario& scenario, const std::string& path, XMLElement* world) {
+  XMLDocument document;
+  const XMLElement& robot = LoadModelFile(path, &document);
+  const std::string main_class = scenario.robot + ".xml";
+  const auto section = [&](const char* name) {
+    XMLElement* found = world->FirstChildElement(name);
+    return found != nullptr ? found : Append(world, name);
+  };
+  for (const XMLElement* from = robot.FirstChildElement(); from != nullptr;
+       from = from->NextSiblingElement()) {
+    const std::string name = from->Name();
+    if (name == "compiler") {
+      world->InsertFirstChild(from->DeepClone(world->GetDocument()));
+    } else if (name == "default") {
+      XMLElement* defaults = Append(section("default"), "default");
+      Set(defaults, "class", main_class);
+      CopyChildren(*from, defaults);
+    } else if (name == "worldbody") {
+      XMLElement* body = Append(section("worldbody"), "body");
+      Set(body, "name", kRobotBody);
+      SetPose(body, scenario.X_WB);
+      if (robot.FirstChildElement("default") != nullptr) Set(body, "childclass", main_class);
+      for (const XMLElement* child = from->FirstChildElement("body"); child != nullptr;
+           child = child->NextSiblingElement("body")) {
+        body->InsertEndChild(child->DeepClone(world->GetDocument()));
+      }
+    } else if (name == "asset" || name == "contact" || name == "equality" || name == "tendon" ||
+               name == "actuator" || name == "sensor") {
+      XMLElement* to = section(name.c_str());
+      const XMLElement* last_before = to->LastChildElement();
+      CopyChildren(*from, to);
+      XMLElement* child = last_before != nullptr
+                              ? const_cast<XMLElement*>(last_before)->NextSiblingElement()
+                              : to->FirstChildElement();
+      for (; child != nullptr; child = child->NextSiblingElement()) {
+        if (robot.FirstChildElement("default") != nullptr && TakesClass(name, child->Name()) &&
+            child->Attribute("class") == nullptr) {
+          Set(child, "class", main_class);
+        }
+      }
+    }  // Physics options, cameras and lights are the world's own.
+  }
+}
+
+// The scene ------------------------------------------------------------------------------------
+
+void AddSettings(const Scenario& scenario, XMLElement* world) {
+  XMLElement* option = Append(world, "option");
+  Set(option, "timestep", "0.001");
+  Set(option, "integrator", "Euler");
+  // Room for a robot that lies deep in an obstacle; running out of it ends the episode.
+  XMLElement* size = Append(world, "size");
+  Set(size, "nconmax", "500");
+  Set(size, "njmax", "2500");
+  XMLElement* statistic = Append(world, "statistic");
+  Set(statistic, "center", ToText(scenario.X_WB.translation()));
+  Set(statistic, "extent", "3");
+  XMLElement* visual = Append(world, "visual");
+  XMLElement* global = Append(visual, "global");
+  Set(global, "offwidth", "1920");
+  Set(global, "offheight", "1080");
+  XMLElement* headlight = Append(visual, "headlight");
+  Set(headlight, "ambient", "0.35 0.35 0.35");
+  Set(headlight, "diffuse", "0.35 0.35 0.35");
+  Set(headlight, "specular", "0.05 0.05 0.05");
+  XMLElement* map = Append(visual, "map");
+  Set(map, "znear", "0.01");
+  Set(map, "zfar", "20");
+  Set(Append(visual, "quality"), "shadowsize", "2048");
+}
+
+void AddMaterial(XMLElement* asset, const char* name, const char* rgba) {
+  XMLElement* material = Append(asset, "material");
+  Set(material, "name", name);
+  Set(material, "rgba", rgba);
+  Set(material, "specular", "0.15");
+  Set(material, "shininess", "0.3");
+}
+
+constexpr const char* kFloorMaterial = "world/floor";
+constexpr const char* kBoxMaterial = "world/box";
+constexpr const char* kObstacleMaterial = "world/obstacle";
+
+void AddAssets(XMLElement* world) {
+  XMLElement* asset = Append(world, "asset");
+  XMLElement* sky = Append(asset, "texture");
+  Set(sky, "name", "world/sky");
+  Set(sky, "type", "skybox");
+  Set(sky, "builtin", "gradient");
+  Set(sky, "rgb1", "0.93 0.95 0.97");
+  Set(sky, "rgb2", "0.62 0.70 0.78");
+  Set(sky, "width", "256");
+  Set(sky, "height", "256");
+  XMLElement* checker = Append(asset, "texture");
+  Set(checker, "name", kFloorMaterial);
+  Set(checker, "type", "2d");
+  Set(checker, "builtin", "checker");
+  Set(checker, "rgb1", "0.72 0.74 0.76");
+  Set(checker, "rgb2", "0.66 0.68 0.70");
+  Set(checker, "width", "256");
+  Set(checker, "height", "256");
+  XMLElement* floor = Append(asset, "material");
+  Set(floor, "name", kFloorMaterial);
+  Set(floor, "texture", kFloorMaterial);
+  Set(floor, "texuniform", "true");
+  Set(floor, "texrepeat", "1 1");  // squares of half a metre
+  Set(floor, "specular", "0.1");
+  AddMaterial(asset, kBoxMaterial, "0.60 0.49 0.38 1");
+  AddMaterial(asset, kObstacleMaterial, "0.85 0.42 0.12 1");
+}
+
+void AddFloorAndLights(const Scenario& scenario, XMLElement* worldbody) {
+  XMLElement* floor = Append(worldbody, "geom");
+  Set(floor, "name", kFloorGeom);
+  Set(floor, "type", "plane");
+  Set(floor, "size", "0 0 1");
+  Set(floor, "pos", ToText(Eigen::Vector3d(0, 0, scenario.floor_m)));
+  Set(floor, "material", kFloorMaterial);
+  XMLElement* light = Append(worldbody, "light");
+  Set(light, "directional", "true");
+  Set(light, "pos",
+      ToText(Eigen::Vector3d(scenario.X_WB.translation() + Eigen::Vector3d(-1, -1.5, 4))));
+  Set(light, "dir", "0.25 0.35 -1");
+  Set(light, "diffuse", "0.55 0.55 0.55");
+  Set(light, "specular", "0.2 0.2 0.2");
+  Set(light, "castshadow", "true");
+}
+
+void AddCamera(const char* name, const Eigen::Vector3d& p_WEye, const Eigen::Vector3d& p_WTarget,
+               const Eigen::Vector3d& up, XMLElement* worldbody) {
+  const Eigen::Vector3d back = (p_WEye - p_WTarget).normalized();  // a camera looks along -z
+  const Eigen::Vector3d right = up.cross(back).normalized();
+  Eigen::Matrix<double, 6, 1> axes;
+  axes << right, back.cross(right);
+  XMLElement* camera = Append(worldbody, "camera");
+  Set(camera, "name", name);
+  Set(camera, "pos", ToText(p_WEye));
+  Set(camera, "xyaxes", ToText(axes));
+  Set(camera, "fovy", "45");
+}
+
+// Both look at the space before the robot, `overview` over its shoulder: the robot does not hide
+// what comes across its front, and what comes does not hide the robot.
+void AddCameras(const Scenario& scenario, XMLElement* worldbody) {
+  const Pose& X_WB = scenario.X_WB;
+  const Eigen::Vector3d target = X_WB * Eigen::Vector3d(0.35, 0, 0.2);
+  AddCamera(kOverviewCamera, X_WB * Eigen::Vector3d(-1.55, -1.75, 1.6), target,
+            X_WB.Rotate(Eigen::Vector3d::UnitZ()), worldbody);
+  AddCamera(kTopCamera, X_WB * Eigen::Vector3d(0.35, 0, 3.6), target,
+            X_WB.Rotate(Eigen::Vector3d::UnitX()), worldbody);
+}
+
+void AddStaticBox(const StaticBox& box, XMLElement* worldbody) {
+  XMLElement* body = Append(worldbody, "body");
+  Set(body, "name", box.name);
+  SetPose(body, box.X_WO);
+  XMLElement* geom = Append(body, "geom");
+  Set(geom, "name", box.name);
+  SetShape(geom, Box{box.size_m});
+  Set(geom, "material", kBoxMaterial);
+}
+
+// X_OA of the appearance in the obstacle's frame: at its foot, looking where it goes.
+Pose AppearancePose(const MovingObstacle& obstacle) {
+  struct FirstLeg {
+    Eigen::Vector3d operator()(const LinearMotion& motion) const { return motion.direction; }
+    Eigen::Vector3d operator()(const WaypointMotion& motion) const {
+      return motion.points_m.at(1) - motion.points_m.at(0);
+    }
+  };
+  const Pose X_WO = PoseAt(obstacle, EpisodeTime(0));
+  const Eigen::Vector3d ahead_O = X_WO.RotateInverse(std::visit(FirstLeg{}, obstacle.motion));
+  const bool level = ahead_O.head<2>().norm() > 1e-6 * ahead_O.norm();
+  const double yaw = level ? std::atan2(ahead_O.y(), ahead_O.x()) : 0.0;
+  return Pose::FromRollPitchYaw({0, 0, yaw}, {0, 0, -HalfExtents(obstacle.shape).z()});
+}
+
+void AddPicture(const MovingObstacle& obstacle, const std::string& path, XMLElement* body) {
+  XMLDocument document;
+  LoadModelFile(path, &document);
+  tinyxml2::XMLPrinter printer;
+  document.Print(&printer);
+  XMLElement* frame = Append(body, "body");
+  SetPose(frame, AppearancePose(obstacle));
+  for (const PictureGeom& picture : PictureOf(printer.CStr(), path)) {
+    XMLElement* geom = Append(frame, "geom");
+    Set(geom, "type", picture.type);
+    Set(geom, "size", ToText(picture.size));
+    SetPose(geom, picture.X_AG);
+    Set(geom, "rgba", ToText(picture.rgba));
+    Set(geom, "contype", "0");
+    Set(geom, "conaffinity", "0");
+    Set(geom, "group", "2");
+  }
+}
+
+void AddMovingObstacle(const Scenario& scenario, std::size_t index, const std::string& models_dir,
+                       XMLElement* worldbody) {
+  const MovingObstacle& obstacle = scenario.moving_obstacles[index];
+  XMLElement* body = Append(worldbody, "body");
+  Set(body, "name", obstacle.name);
+  Set(body, "mocap", "true");
+  SetPose(body, PoseAt(obstacle, EpisodeTime(0)));
+  XMLElement* geom = Append(body, "geom");
+  Set(geom, "name", obstacle.name);
+  SetShape(geom, obstacle.shape);
+  if (obstacle.appearance.empty()) {
+    Set(geom, "material", kObstacleMaterial);
+    return;
+  }
+  Set(geom, "group", "4");
+  Set(geom, "rgba", "0.85 0.42 0.12 0.25");
+  const std::string path =
+      models_dir + "/" + obstacle.appearance + "/" + obstacle.appearance + ".xml";
+  if (!std::filesystem::is_regular_file(path)) {
+    const std::string key = "moving_obstacles[" + std::to_string(index) + "].appearance";
+    const auto line = scenario.lines.find(key);
+    throw InputError(scenario.file, line == scenario.lines.end() ? 0 : line->second, key,
+                     "there is no " + path);
+  }
+  AddPicture(obstacle, path, body);
+}
+
+}  // namespace
+
+std::string BuildWorldXml(const Scenario& scenario, const std::vector<std::string>& mount_links,
+                          const std::string& models_dir) {
+  XMLDocument document;
+  XMLElement* world = document.NewElement("mujoco");
+  document.InsertEndChild(world);
+  Set(world, "model", scenario.name);
+  AddSettings(scenario, world);
+  AddAssets(world);
+  XMLElement* worldbody = Append(world, "worldbody");
+  AddFloorAndLights(scenario, worldbody);
+  AddCameras(scenario, worldbody);
+  MergeRobot(scenario, models_dir + "/" + scenario.robot + "/" + scenario.robot + ".xml", world);
+  for (const StaticBox& box : scenario.static_boxes) AddStaticBox(box, worldbody);
+  for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
+    AddMovingObstacle(scenario, i, models_dir, worldbody);
+  }
+  if (!scenario.mount.empty()) {
+    XMLElement* contact = world->FirstChildElement("contact");
+    if (contact == nullptr) contact = Append(world, "contact");
+    for (const std::string& link : mount_links) {
+      XMLElement* exclude = Append(contact, "exclude");
+      Set(exclude, "body1", link);
+      Set(exclude, "body2", scenario.mount);
+    }
+  }
+  tinyxml2::XMLPrinter printer;
+  document.Print(&printer);
+  return printer.CStr();
+}
+
+}  // namespace sidestep

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenarios/scenario.h"
+
+namespace sidestep {
+
+/// Names in a world's model that do not come from the scenario.
+inline constexpr const char* kRobotBody = "robot";  ///< at X_WB; holds the robot's bodies
+inline constexpr const char* kFloorGeom = "floor";
+inline constexpr const char* kOverviewCamera = "overview";
+inline constexpr const char* kTopCamera = "top";
+
+/// Builds the whole world as one MJCF text that refers to no other file: it is what is simulated,
+/// stored with a recording and drawn from it.
+///
+/// - The robot: `<models_dir>/<robot>/<robot>.xml`, its bodies in the body `robot` at X_WB, its
+///   defaults in a class of their own, so that they touch nothing else.
+/// - Static boxes: one fixed body each, body and geom named as in the scenario.
+/// - Moving obstacles: one mocap body each, its contact geom of the same name. Their pose is
+///   prescribed: they push and are never pushed, so what they touch is exact.
+///   With an `appearance`, the contact geom is in group 4 (not drawn by default; its colour is
+///   translucent, to be shown as a shell), and what `<models_dir>/<appearance>/<appearance>.xml`
+///   draws by default stands inside it: geoms of group 2 that touch nothing, origin at the middle
+///   of the shape's underside, x axis along the first leg of the motion (as far as it is level).
+/// - The floor, lights, and the cameras `overview` and `top`.
+/// - Contacts between each of `mount_links` (bodies of the robot) and the scenario's mount are
+///   excluded.
+///
+/// Physics: 1 ms steps, Euler. MuJoCo's Euler takes the joints' damping implicitly, which is all
+/// the damping these models have, and holds the motors' torque over the step as a 1 kHz controller
+/// does; the implicit integrator would add cost and no accuracy.
+///
+/// @throws InputError for a model file that is missing, is not MJCF, refers to other files, or
+/// cannot be merged.
+std::string BuildWorldXml(const Scenario& scenario, const std::vector<std::string>& mount_links,
+                          const std::string& models_dir);
+
+}  // namespace sidestep
