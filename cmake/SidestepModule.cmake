@@ -11,7 +11,7 @@ target_compile_options(sidestep_warnings INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno
 #                 [PRIVATE_DEPENDS <target>...])
 #
 # One folder, one static library, one alias sidestep::<folder>. Include paths start at the
-# repository root. DEPENDS are the module's arrows; tests/architecture_test.py holds the includes
+# repository root. DEPENDS are the module's arrows; tests/architecture_test.cc holds the includes
 # to them.
 function(sidestep_module name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace sidestep {
+
+/// One module and what its files may include. Every module may use itself, the C++ library and
+/// Eigen.
+struct ModuleRule {
+  std::string name;
+  std::vector<std::string> modules;
+  /// Beginnings of the names in angle brackets, e.g. "ceres/", "hdf5.h".
+  std::vector<std::string> libraries;
+};
+
+/// The arrows between modules; docs/architecture.md says the same in prose.
+const std::vector<ModuleRule>& ModuleRules();
+
+/// The text files of a repository, by their path from its root with '/' between folders.
+using SourceTree = std::map<std::string, std::string>;
+
+/// Reads every text file below `root`, except what git ignores: build/, out/ and hidden folders
+/// other than .ci.
+SourceTree ReadSourceTree(const std::filesystem::path& root);
+
+/// What breaks the rules, one line each, `FILE:LINE: WHY` or `FILE: WHY`. Checked are:
+///  - includes: module headers and libraries against `rules`, quoted names from the root;
+///  - links: a module's CMakeLists.txt names exactly the modules that its files include, and those
+///    that its headers include are not private;
+///  - headers: `#pragma once`;
+///  - the top level: no folder but the modules and a few known ones;
+///  - paths: no file names a folder that only one machine has.
+std::vector<std::string> FindViolations(const SourceTree& tree,
+                                        const std::vector<ModuleRule>& rules);
+
+}  // namespace sidestep

@@ -1,0 +1,115 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <ostream>
+
+#include "tests/architecture_rules.h"
+
+namespace sidestep {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+TEST(Architecture, OfThisRepositoryHoldsToTheRules) {
+  const SourceTree tree = ReadSourceTree(SIDESTEP_SOURCE_DIR);
+  ASSERT_EQ(tree.count("tests/architecture_test.cc"), 1u) << "the tree was not read";
+  for (const std::string& violation : FindViolations(tree, ModuleRules())) {
+    ADD_FAILURE() << violation;
+  }
+}
+
+// The page for people must not say something else than the rules do.
+TEST(Architecture, IsDescribedAsItIsChecked) {
+  const SourceTree tree = ReadSourceTree(SIDESTEP_SOURCE_DIR);
+  const std::string& page = tree.at("docs/architecture.md");
+  for (const ModuleRule& rule : ModuleRules()) {
+    const std::size_t begin = page.find("| `" + rule.name + "/` |");
+    ASSERT_NE(begin, std::string::npos) << rule.name << " has no row";
+    const std::string row = page.substr(begin, page.find('\n', begin) - begin);
+    std::string arrows;
+    for (const std::string& module : rule.modules) arrows += (arrows.empty() ? "" : ", ") + module;
+    if (rule.name == "cli") arrows = "all";
+    if (arrows.empty()) arrows = "–";
+    EXPECT_NE(row.find("| " + arrows + " |"), std::string::npos) << row << "\nexpected: " << arrows;
+  }
+}
+
+// The checker itself, on a tree of two modules that keeps every rule.
+const std::vector<ModuleRule> kRules = {{"base", {}, {"lib/"}}, {"top", {"base"}, {}}};
+
+SourceTree SoundTree() {
+  return {
+      {"base/CMakeLists.txt", "sidestep_module(base SOURCES a.cc DEPENDS Eigen3::Eigen)\n"},
+      {"base/a.h", "#pragma once\n#include <Eigen/Core>\n#include <vector>\n"},
+      {"base/a.cc", "#include \"base/a.h\"\n\n#include <lib/lib.h>\n"},
+      {"top/CMakeLists.txt", "sidestep_module(top SOURCES b.cc DEPENDS sidestep::base)\n"},
+      {"top/b.h", "#pragma once\n#include \"base/a.h\"\n"},
+      {"top/b.cc", "#include \"top/b.h\"\n"},
+      {"tests/b_test.cc", "#include <lib/lib.h>\n#include \"top/b.h\"\n"},
+      {"README.md", "Text.\n"},
+  };
+}
+
+TEST(ArchitectureChecker, AcceptsASoundTree) {
+  EXPECT_THAT(FindViolations(SoundTree(), kRules), IsEmpty());
+}
+
+struct Breach {
+  std::string name;
+  std::string path;
+  std::string text;  ///< what stands in the file instead
+  std::string expected;
+};
+std::ostream& operator<<(std::ostream& stream, const Breach& breach) {
+  return stream << breach.name;
+}
+
+class ArchitectureBreach : public ::testing::TestWithParam<Breach> {};
+
+TEST_P(ArchitectureBreach, IsFoundAndNothingElse) {
+  SourceTree tree = SoundTree();
+  tree[GetParam().path] = GetParam().text;
+  EXPECT_THAT(FindViolations(tree, kRules), ElementsAre(GetParam().expected));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, ArchitectureBreach,
+    ::testing::Values(
+        Breach{"WrongWayArrow", "top/b.cc", "#include \"top/b.h\"\n#include \"tests/b_test.cc\"\n",
+               "top/b.cc:2: top/ may not include tests/b_test.cc"},
+        Breach{"ForbiddenLibrary", "top/b.cc", "// x\n  #  include <lib/lib.h>  // y\n",
+               "top/b.cc:2: top/ may not include <lib/lib.h>"},
+        Breach{"SystemHeader", "base/a.cc", "#include <unistd.h>\n",
+               "base/a.cc:1: base/ may not include <unistd.h>"},
+        Breach{"NameNotFromTheRoot", "top/b.cc", "#include \"b.h\"\n",
+               "top/b.cc:1: no file b.h (quoted names begin at the repository root)"},
+        Breach{"NoPragmaOnce", "base/a.h", "#include <vector>\n",
+               "base/a.h: a header without #pragma once"},
+        Breach{"LinkWithoutInclude", "base/CMakeLists.txt",
+               "sidestep_module(base SOURCES a.cc DEPENDS sidestep::top)\n",
+               "base/CMakeLists.txt: links top, which no file includes"},
+        Breach{"IncludeWithoutLink", "top/CMakeLists.txt", "sidestep_module(top SOURCES b.cc)\n",
+               "top/CMakeLists.txt: does not link base, which is included"},
+        Breach{"HeaderBehindAPrivateLink", "top/CMakeLists.txt",
+               "sidestep_module(top SOURCES b.cc PRIVATE_DEPENDS sidestep::base)\n",
+               "top/CMakeLists.txt: links base privately, but a header includes it"},
+        Breach{"UnknownFolder", "utils/x.txt", "",
+               "utils: a folder at the top that is no module; see docs/architecture.md"},
+        Breach{"MachinePath", "README.md",
+               "a\nsee /ho"
+               "me/someone/notes\n",
+               "README.md:2: names a folder of one machine, /ho"
+               "me/"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(ArchitectureChecker, FindsAnArrowThatPointsBack) {
+  SourceTree tree = SoundTree();
+  tree["base/a.cc"] = "#include \"top/b.h\"\n";
+  EXPECT_THAT(FindViolations(tree, kRules),
+              ElementsAre("base/a.cc:1: base/ may not include top/b.h",
+                          "base/CMakeLists.txt: does not link top, which is included"));
+}
+
+}  // namespace
+}  // namespace sidestep
