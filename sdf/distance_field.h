@@ -29,8 +29,9 @@ class DistanceField {
   /// Samples the field at point Q and time `t`.
   ///
   /// The value is trilinear between cell centres, so it is continuous, and its gradient is that of
-  /// the interpolant: exact, but it jumps at cell faces. Outside the mapped box the answer is
-  /// {max_distance_m(), 0, in_grid = false}: unknown space does not push.
+  /// the interpolant: exact, but it jumps at cell faces. Outside the mapped box `in_grid` is false
+  /// and the answer is {max_distance_m(), 0}: unknown space does not push. Only a moving object
+  /// known to reach there still does.
   ///
   /// @param p_WQ [m] position of Q in the world frame W, finite.
   /// @param t    time since the episode began, never an offset from "now".

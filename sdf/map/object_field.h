@@ -1,0 +1,28 @@
+#pragma once
+
+#include "core/grid.h"
+#include "core/shape.h"
+#include "sdf/map/distance_transform.h"
+#include "sdf/map/sdf_grid.h"
+
+namespace sidestep {
+
+/// How many free cells an object's grid needs on each side, so that its field has reached
+/// `margin_m` wherever it ends: ceil(margin / cell), and one more because interpolation next to the
+/// border looks one cell outwards. With fewer, a composite field jumps at the borders of its
+/// objects' grids.
+int PaddingCells(double margin_m, double cell_m);
+
+/// The field of a shape given as cells in its own frame O, padded for `margin_m` > 0. The same cell
+/// edge; the padding counts as free.
+/// @throws std::invalid_argument as ComputeSignedDistance, or for a margin that is not > 0.
+SdfGrid MakeObjectField(const OccupancyGrid& shape_O, double margin_m,
+                        DistanceConvention convention = DistanceConvention::kSurface);
+
+/// The exact distances of an ideal shape, sampled at cells of its own frame O (one has its centre
+/// in the origin), padded for `margin_m` > 0. Unlike a field made from occupied cells it knows the
+/// surface to better than half a cell.
+/// @throws std::invalid_argument unless cell and margin are > 0.
+SdfGrid MakeShapeField(const Shape& shape, double cell_m, double margin_m);
+
+}  // namespace sidestep

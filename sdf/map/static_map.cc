@@ -1,0 +1,18 @@
+#include "sdf/map/static_map.h"
+
+#include "sdf/map/distance_transform.h"
+
+namespace sidestep {
+
+void StaticMap::Set(const OccupancyGrid& occupancy) {
+  if (occupancy.spec == occupancy_.spec && occupancy.cells == occupancy_.cells) return;
+  occupancy_ = occupancy;
+  field_.reset();
+}
+
+std::shared_ptr<const SdfGrid> StaticMap::Field() {
+  if (!field_) field_ = std::make_shared<const SdfGrid>(ComputeSignedDistance(occupancy_));
+  return field_;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sdf/prediction/predictor.h"
+
+namespace sidestep {
+
+/// The names of all predictors, as scenarios write them.
+std::vector<std::string> PredictorNames();
+
+/// @throws std::invalid_argument for an unknown name; the message lists those that exist.
+std::unique_ptr<ObstaclePredictor> MakePredictor(const std::string& name);
+
+}  // namespace sidestep

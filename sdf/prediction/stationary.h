@@ -1,0 +1,12 @@
+#pragma once
+
+#include <memory>
+
+#include "sdf/prediction/predictor.h"
+
+namespace sidestep {
+
+/// Everything stays where it was last seen.
+std::unique_ptr<ObstaclePredictor> MakeStationaryPredictor();
+
+}  // namespace sidestep

@@ -1,0 +1,51 @@
+#include "sdf/tracking/background.h"
+
+#include <iterator>
+
+namespace sidestep {
+namespace {
+
+constexpr double kLostShare = 0.05;
+
+}  // namespace
+
+Background::Background(const GridSpec& grid) {
+  CheckGridSpec(grid);
+  is_background_.assign(grid.num_cells(), 0);
+}
+
+void Background::Absorb(int id, const Component& component) {
+  owned_[id] = {component.cells, component.cells.size()};
+  for (const std::size_t cell : component.cells) is_background_[cell] = 1;
+}
+
+std::vector<int> Background::ReleaseVanished(const OccupancyGrid& occupancy) {
+  std::vector<int> released;
+  for (auto it = owned_.begin(); it != owned_.end();) {
+    Owned& owned = it->second;
+    std::erase_if(owned.cells, [&](std::size_t cell) {
+      if (occupancy.cells[cell] != 0) return false;
+      is_background_[cell] = 0;
+      return true;
+    });
+    const double held = static_cast<double>(owned.cells.size());
+    if (held >= (1 - kLostShare) * static_cast<double>(owned.num_absorbed)) {
+      ++it;
+      continue;
+    }
+    for (const std::size_t cell : owned.cells) is_background_[cell] = 0;
+    released.push_back(it->first);
+    it = owned_.erase(it);
+  }
+  return released;
+}
+
+OccupancyGrid Background::Foreground(const OccupancyGrid& occupancy) const {
+  OccupancyGrid foreground = occupancy;
+  for (std::size_t i = 0; i < is_background_.size(); ++i) {
+    if (is_background_[i] != 0) foreground.cells[i] = 0;
+  }
+  return foreground;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "core/grid.h"
+#include "sdf/tracking/segmentation.h"
+
+namespace sidestep {
+
+/// The cells of things that rest. What is filled and not background is the foreground, where things
+/// are told apart: so a thing that moves past a resting one and touches it stays a component of its
+/// own.
+class Background {
+ public:
+  /// @throws std::invalid_argument for a bad grid.
+  explicit Background(const GridSpec& grid);
+
+  /// Makes a component background, owned by `id` until that is released.
+  void Absorb(int id, const Component& component);
+
+  /// Lets go of the cells that are free now. An owner that has lost over 5 % of its cells since it
+  /// was absorbed (one layer of a thing 20 cells long) does not rest any more: all its cells are
+  /// released, so that it is in the foreground as a whole. Returns those owners, ascending.
+  std::vector<int> ReleaseVanished(const OccupancyGrid& occupancy);
+
+  /// What is filled and not background.
+  OccupancyGrid Foreground(const OccupancyGrid& occupancy) const;
+
+ private:
+  struct Owned {
+    std::vector<std::size_t> cells;  // those still held
+    std::size_t num_absorbed = 0;    // how many there were
+  };
+
+  std::vector<std::uint8_t> is_background_;  // of each cell of the grid
+  std::map<int, Owned> owned_;               // by owner
+};
+
+}  // namespace sidestep

@@ -1,0 +1,235 @@
+#include "sdf/tracking/object_tracker.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include "sdf/map/object_field.h"
+#include "sdf/stopwatch.h"
+
+namespace sidestep {
+namespace {
+
+std::array<int, 3> Extent(const Component& component) {
+  std::array<int, 3> extent;
+  for (std::size_t a = 0; a < 3; ++a) extent[a] = component.last[a] - component.first[a] + 1;
+  return extent;
+}
+
+// The corners of the box around a component, faces included [m].
+Eigen::Vector3d LowCorner(const Component& component, const GridSpec& grid) {
+  const auto [i, j, k] = component.first;
+  return grid.Center(i, j, k).array() - grid.cell_m / 2;
+}
+Eigen::Vector3d HighCorner(const Component& component, const GridSpec& grid) {
+  const auto [i, j, k] = component.last;
+  return grid.Center(i, j, k).array() + grid.cell_m / 2;
+}
+
+Eigen::Vector3d PredictPosition(const TrackedObject& object, EpisodeTime t) {
+  return object.latest().p_WO +
+         MeanVelocity(object.history, kVelocityBaseline) * (t - object.latest().t).seconds();
+}
+
+}  // namespace
+
+ObjectTracker::ObjectTracker(const GridSpec& grid, const ObjectTrackerOptions& options)
+    : grid_(grid), options_(options), background_(grid) {
+  if (!(options_.max_distance_m > 0)) {
+    throw std::invalid_argument("ObjectTracker: max_distance_m must be > 0");
+  }
+}
+
+TrackerTimes ObjectTracker::Update(const OccupancyGrid& occupancy, EpisodeTime t) {
+  if (occupancy.spec != grid_) throw std::invalid_argument("ObjectTracker: another grid");
+  if (t_last_ && t <= *t_last_) throw std::invalid_argument("ObjectTracker: time must go on");
+  t_last_ = t;
+  TrackerTimes times;
+  Stopwatch stopwatch;
+
+  ReopenVanished(occupancy, t);
+  const std::vector<Component> components = FindComponents(background_.Foreground(occupancy));
+  times.segment_s = stopwatch.Lap();
+
+  for (auto& [id, track] : tracks_) {
+    if (track.state == State::kResting) {
+      AddSighting(track, {t, track.object.latest().p_WO});
+    } else {
+      ++track.missed_scans;  // unless it is found below
+    }
+  }
+  std::vector<Track*> owners = Associate(components, t);
+  static_occupancy_ = occupancy;
+  for (std::size_t c = 0; c < components.size(); ++c) {
+    if (owners[c] != nullptr) {
+      Follow(*owners[c], components[c], t);
+    } else {
+      owners[c] = Begin(components[c], t);
+    }
+    Classify(*owners[c], components[c], t);
+    if (owners[c]->state == State::kMoving) {
+      for (const std::size_t cell : components[c].cells) static_occupancy_.cells[cell] = 0;
+    }
+  }
+  std::erase_if(tracks_, [&](const auto& entry) {
+    const Track& track = entry.second;
+    return track.missed_scans > (track.state == State::kMoving ? options_.max_missed_scans : 0);
+  });
+  times.track_s = stopwatch.Lap();
+  return times;
+}
+
+std::vector<std::shared_ptr<const TrackedObject>> ObjectTracker::MovingObjects() const {
+  std::vector<std::shared_ptr<const TrackedObject>> objects;
+  for (const auto& [id, track] : tracks_) {
+    if (track.state == State::kMoving) {
+      objects.push_back(std::make_shared<const TrackedObject>(track.object));
+    }
+  }
+  return objects;
+}
+
+void ObjectTracker::ReopenVanished(const OccupancyGrid& occupancy, EpisodeTime t) {
+  for (const int id : background_.ReleaseVanished(occupancy)) {
+    Track& track = tracks_.at(id);
+    track.state = State::kNew;
+    track.p_WStart = track.object.latest().p_WO;
+    track.t_start = t;
+    track.settle = options_.rest;
+  }
+}
+
+std::vector<ObjectTracker::Track*> ObjectTracker::Associate(
+    const std::vector<Component>& components, EpisodeTime t) {
+  std::vector<std::tuple<double, int, std::size_t>> pairs;  // distance, id, component
+  for (const auto& [id, track] : tracks_) {
+    if (track.state == State::kResting) continue;
+    const double unseen_s = (t - track.object.latest().t).seconds();
+    const double gate_m = options_.max_speed_m_s * unseen_s + 2 * grid_.cell_m;
+    const Eigen::Vector3d p_WExpected = PredictPosition(track.object, t);
+    for (std::size_t c = 0; c < components.size(); ++c) {
+      const double distance_m = (Locate(track, components[c]) - p_WExpected).norm();
+      if (distance_m <= gate_m) pairs.emplace_back(distance_m, id, c);
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  std::vector<Track*> owners(components.size(), nullptr);
+  for (const auto& [distance_m, id, c] : pairs) {
+    Track& track = tracks_.at(id);
+    if (track.missed_scans == 0 || owners[c] != nullptr) continue;
+    track.missed_scans = 0;
+    owners[c] = &track;
+  }
+  return owners;
+}
+
+ObjectTracker::Track* ObjectTracker::Begin(const Component& component, EpisodeTime t) {
+  const int id = next_id_++;
+  Track& track = tracks_[id];
+  track.object.id = id;
+  track.object.first_seen = t;
+  track.object.history = {{t, component.centroid_m}};
+  track.p_WStart = component.centroid_m;
+  track.t_start = t;
+  track.settle = options_.settle;
+  TakeShape(track, component);
+  return &track;
+}
+
+void ObjectTracker::Follow(Track& track, const Component& component, EpisodeTime t) const {
+  const std::array<int, 3> extent = Extent(component);
+  bool is_longer = false;
+  bool is_other = false;
+  for (std::size_t a = 0; a < 3; ++a) {
+    is_longer |= extent[a] > track.extent[a];
+    // A rigid thing covers one cell more or less, depending on where it stands.
+    is_other |= std::abs(extent[a] - track.extent[a]) > 1;
+  }
+  const bool is_whole = !IsCutOff(component);
+  const bool deformed = is_other && is_whole && !track.cut_off;
+  const bool completed = is_whole && track.cut_off;
+  const bool grew = is_longer && component.cells.size() > track.num_cells;
+  AddSighting(track, {t, deformed ? PredictPosition(track.object, t) : Locate(track, component)});
+  if (deformed || completed || grew) TakeShape(track, component);
+}
+
+void ObjectTracker::Classify(Track& track, const Component& component, EpisodeTime t) {
+  const double moved_m = options_.moved_cells * grid_.cell_m;
+  const Eigen::Vector3d& p_WO = track.object.latest().p_WO;
+  bool rests = false;
+  if (track.state == State::kNew) {
+    if ((p_WO - track.p_WStart).norm() >= moved_m) {
+      track.state = State::kMoving;
+      TakeShape(track, component);  // now with its field
+    } else {
+      rests = t - track.t_start >= track.settle;
+    }
+  } else {
+    const EpisodeTime since = t - options_.rest;
+    const auto stayed = [&](const Sighting& sighting) {
+      return sighting.t < since || (p_WO - sighting.p_WO).norm() < moved_m;
+    };
+    const std::vector<Sighting>& history = track.object.history;
+    rests = history.front().t <= since && std::all_of(history.begin(), history.end(), stayed);
+  }
+  if (rests) {
+    track.state = State::kResting;
+    track.object.field_O.reset();
+    background_.Absorb(track.object.id, component);
+  }
+}
+
+Eigen::Vector3d ObjectTracker::Locate(const Track& track, const Component& component) const {
+  const Eigen::Vector3d low = LowCorner(component, grid_);
+  const Eigen::Vector3d high = HighCorner(component, grid_);
+  const TrackedObject& object = track.object;
+  Eigen::Vector3d p_WO = component.centroid_m;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const bool sees_low = component.first[a] > 0;
+    const bool sees_high = component.last[a] < grid_.size[a] - 1;
+    const Eigen::Index axis = static_cast<Eigen::Index>(a);
+    if (sees_low && !sees_high) {
+      p_WO(axis) = low(axis) - (object.box_center_O - object.box_half_extents_m)(axis);
+    } else if (sees_high && !sees_low) {
+      p_WO(axis) = high(axis) - (object.box_center_O + object.box_half_extents_m)(axis);
+    }
+  }
+  return p_WO;
+}
+
+bool ObjectTracker::IsCutOff(const Component& component) const {
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (component.first[a] == 0 || component.last[a] == grid_.size[a] - 1) return true;
+  }
+  return false;
+}
+
+void ObjectTracker::AddSighting(Track& track, const Sighting& sighting) const {
+  std::vector<Sighting>& history = track.object.history;
+  std::erase_if(history, [&](const Sighting& old) { return sighting.t - old.t > options_.memory; });
+  history.push_back(sighting);
+}
+
+void ObjectTracker::TakeShape(Track& track, const Component& component) const {
+  TrackedObject& object = track.object;
+  const Eigen::Vector3d shift_W = component.centroid_m - object.latest().p_WO;
+  for (Sighting& sighting : object.history) sighting.p_WO += shift_W;
+  track.p_WStart += shift_W;
+
+  const Eigen::Vector3d low = LowCorner(component, grid_);
+  const Eigen::Vector3d high = HighCorner(component, grid_);
+  object.box_center_O = (low + high) / 2 - component.centroid_m;
+  object.box_half_extents_m = (high - low) / 2;
+  track.extent = Extent(component);
+  track.num_cells = component.cells.size();
+  track.cut_off = IsCutOff(component);
+  if (track.state != State::kMoving) return;  // what does not move needs no field of its own
+  OccupancyGrid shape_O = CutOut(component, grid_);
+  shape_O.spec.first_center_m -= component.centroid_m;
+  object.field_O =
+      std::make_shared<const SdfGrid>(MakeObjectField(shape_O, options_.max_distance_m));
+}
+
+}  // namespace sidestep

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/grid.h"
+#include "core/time.h"
+#include "sdf/tracking/background.h"
+#include "sdf/tracking/segmentation.h"
+#include "sdf/tracking/tracked_object.h"
+
+namespace sidestep {
+
+struct ObjectTrackerOptions {
+  double max_distance_m = 0;   ///< > 0; objects' fields are padded for this
+  double max_speed_m_s = 4;    ///< the gate: a thing cannot have gone further since last seen
+  double moved_cells = 0.75;   ///< a thing that is this far from where it began is moving
+  HorizonOffset settle{0.06};  ///< a thing seen for this long that has not moved is static
+  HorizonOffset rest{0.25};    ///< the same for a thing that is known to have moved before
+  HorizonOffset memory{2};     ///< how far back a history reaches
+  int max_missed_scans = 3;    ///< a moving thing unseen for more scans in a row is given up
+};
+
+/// What one Update took [s, wall clock], for the report only.
+struct TrackerTimes {
+  double segment_s = 0, track_s = 0;
+};
+
+/// Follows the things in a stream of occupancy grids, and tells what moves from what does not.
+///
+/// Each thing is new, moving or resting. A new one is static until it has moved by most of a cell;
+/// if it has not within `settle`, it rests: its cells become background. A resting thing that
+/// loses cells is new again, with its past; a moving one that stays for `rest` rests. In the
+/// foreground, 26-connected components are associated with the known things, nearest pair first and
+/// one to one, by the distance to where a thing should be by now, within a gate.
+///
+/// A position is the centroid of the component. Where the grid's border cuts a thing off, it is
+/// measured from the face that is seen instead, so that a thing that enters or leaves has its true
+/// speed and keeps the most of its shape that was ever seen. When the shape changes otherwise (two
+/// things merge or part), the thing is taken to have moved on as before, and later positions are
+/// those of the new shape.
+///
+/// Deterministic: ties go to the older thing and the lower cell.
+class ObjectTracker {
+ public:
+  /// @throws std::invalid_argument for a bad grid or max_distance_m not > 0.
+  ObjectTracker(const GridSpec& grid, const ObjectTrackerOptions& options);
+
+  /// Takes in what is filled at time t.
+  /// @throws std::invalid_argument for another grid, or unless t is later than the last.
+  TrackerTimes Update(const OccupancyGrid& occupancy, EpisodeTime t);
+
+  /// The things that move, by id, also those that the latest scan did not show.
+  std::vector<std::shared_ptr<const TrackedObject>> MovingObjects() const;
+
+  /// What was filled in the latest scan and does not belong to a moving thing.
+  const OccupancyGrid& static_occupancy() const { return static_occupancy_; }
+
+ private:
+  enum class State { kNew, kMoving, kResting };
+
+  // A thing, and what its shape was like when it was taken.
+  struct Track {
+    TrackedObject object;
+    State state = State::kNew;
+    Eigen::Vector3d p_WStart;               // where it was when it was new
+    EpisodeTime t_start;                    // since when it is new
+    HorizonOffset settle;                   // how long it may stay so
+    std::array<int, 3> extent = {0, 0, 0};  // of its shape, in cells
+    std::size_t num_cells = 0;
+    bool cut_off = false;  // by the grid's border: there may be more of it
+    int missed_scans = 0;
+  };
+
+  void ReopenVanished(const OccupancyGrid& occupancy, EpisodeTime t);
+  // For each component the track that it belongs to, or nothing.
+  std::vector<Track*> Associate(const std::vector<Component>& components, EpisodeTime t);
+  Track* Begin(const Component& component, EpisodeTime t);
+  void Follow(Track& track, const Component& component, EpisodeTime t) const;
+  void Classify(Track& track, const Component& component, EpisodeTime t);
+
+  // Where O is, if `component` is a view of the track's shape.
+  Eigen::Vector3d Locate(const Track& track, const Component& component) const;
+  bool IsCutOff(const Component& component) const;
+  void AddSighting(Track& track, const Sighting& sighting) const;
+  // Makes the component the track's shape; O moves to its centroid, and the whole past with it.
+  void TakeShape(Track& track, const Component& component) const;
+
+  GridSpec grid_;
+  ObjectTrackerOptions options_;
+  Background background_;
+  OccupancyGrid static_occupancy_;
+  std::map<int, Track> tracks_;  // by id, hence from the oldest to the newest
+  int next_id_ = 1;
+  std::optional<EpisodeTime> t_last_;
+};
+
+}  // namespace sidestep

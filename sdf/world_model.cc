@@ -1,0 +1,253 @@
+#include "sdf/world_model.h"
+
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "sdf/composite_field.h"
+#include "sdf/grid_field.h"
+#include "sdf/map/object_field.h"
+#include "sdf/map/occupancy_from_scan.h"
+#include "sdf/map/static_map.h"
+#include "sdf/prediction/registry.h"
+#include "sdf/stopwatch.h"
+#include "sdf/tracking/object_tracker.h"
+
+namespace sidestep {
+namespace {
+
+// What all kinds of knowledge share: the order of scans, the grid, the static map, the clock.
+class MappedWorld : public WorldModel {
+ public:
+  explicit MappedWorld(const WorldModelOptions& options) : options_(options) {}
+
+  void Observe(const Scan& scan) final {
+    if (t_scan_ && scan.t <= *t_scan_) {
+      throw std::invalid_argument("WorldModel: scans must come in the order of capture");
+    }
+    Stopwatch stopwatch;
+    const OccupancyGrid occupancy = FillFromScan(scan, options_.grid);
+    times_.map_s += stopwatch.Lap();
+    Learn(occupancy, scan.t);
+    t_scan_ = scan.t;
+  }
+
+  std::shared_ptr<const DistanceField> MakeField() final {
+    if (!t_scan_) throw std::invalid_argument("WorldModel: no scan yet");
+    Stopwatch stopwatch;
+    std::shared_ptr<const SdfGrid> static_W = static_map_.Field();
+    times_.map_s += stopwatch.Lap();
+    auto field = Compose(std::move(static_W));
+    times_.predict_s += stopwatch.Lap();
+    return field;
+  }
+
+  std::vector<PredictedObject> DescribeObjects(const std::vector<EpisodeTime>&) const override {
+    return {};
+  }
+
+  WorldModelTimes TakeTimes() final { return std::exchange(times_, {}); }
+
+ protected:
+  // Takes in what is filled at time t.
+  virtual void Learn(const OccupancyGrid& occupancy, EpisodeTime t) = 0;
+  virtual std::shared_ptr<const DistanceField> Compose(std::shared_ptr<const SdfGrid> static_W) {
+    return std::make_shared<GridField>(std::move(static_W), options_.max_distance_m);
+  }
+
+  const WorldModelOptions options_;
+  StaticMap static_map_;
+  std::optional<EpisodeTime> t_scan_;  // of the latest scan
+  WorldModelTimes times_;
+};
+
+// Knowledge::kStatic
+class FirstSightWorld final : public MappedWorld {
+ public:
+  using MappedWorld::MappedWorld;
+
+ private:
+  void Learn(const OccupancyGrid& occupancy, EpisodeTime) override {
+    if (!t_scan_) static_map_.Set(occupancy);
+  }
+};
+
+// Knowledge::kExecuteAndUpdate
+class FrozenWorld final : public MappedWorld {
+ public:
+  using MappedWorld::MappedWorld;
+
+ private:
+  void Learn(const OccupancyGrid& occupancy, EpisodeTime) override { static_map_.Set(occupancy); }
+};
+
+// Knowledge::kPrediction
+class PredictedWorld final : public MappedWorld {
+ public:
+  explicit PredictedWorld(const WorldModelOptions& options)
+      : MappedWorld(options),
+        predictor_(MakePredictor(options.predictor)),
+        tracker_(options.grid, {.max_distance_m = options.max_distance_m}) {}
+
+  std::vector<PredictedObject> DescribeObjects(
+      const std::vector<EpisodeTime>& times) const override {
+    std::vector<PredictedObject> described;
+    for (const auto& object : objects_) {
+      PredictedObject& box = described.emplace_back();
+      box.id = object->id;
+      box.half_extents_m = object->box_half_extents_m;
+      box.t = times;
+      const Pose X_OBox = Pose::Translation(object->box_center_O);
+      for (const EpisodeTime t : times) {
+        box.X_WO.push_back(predictor_->PredictPose(*object, t) * X_OBox);
+      }
+    }
+    return described;
+  }
+
+ private:
+  void Learn(const OccupancyGrid& occupancy, EpisodeTime t) override {
+    const TrackerTimes times = tracker_.Update(occupancy, t);
+    times_.segment_s += times.segment_s;
+    times_.track_s += times.track_s;
+    Stopwatch stopwatch;
+    static_map_.Set(tracker_.static_occupancy());
+    times_.map_s += stopwatch.Lap();
+  }
+
+  std::shared_ptr<const DistanceField> Compose(std::shared_ptr<const SdfGrid> static_W) override {
+    objects_ = tracker_.MovingObjects();
+    std::vector<MovingField> moving;
+    for (const auto& object : objects_) {
+      moving.push_back({object->field_O, [object, predictor = predictor_](EpisodeTime t) {
+                          return predictor->PredictPose(*object, t);
+                        }});
+    }
+    return std::make_shared<CompositeField>(std::move(static_W), std::move(moving),
+                                            options_.max_distance_m);
+  }
+
+  std::shared_ptr<const ObstaclePredictor> predictor_;
+  ObjectTracker tracker_;
+  std::vector<std::shared_ptr<const TrackedObject>> objects_;  // in the latest field
+};
+
+// Knowledge::kFullKnowledge
+class KnownWorld final : public MappedWorld {
+ public:
+  using MappedWorld::MappedWorld;
+
+  std::vector<PredictedObject> DescribeObjects(
+      const std::vector<EpisodeTime>& times) const override {
+    std::vector<PredictedObject> described;
+    for (std::size_t n = 0; n < fields_.size(); ++n) {
+      PredictedObject& box = described.emplace_back();
+      box.id = static_cast<int>(n) + 1;
+      box.half_extents_m = fields_[n].half_extents_m;
+      box.t = times;
+      for (const EpisodeTime t : times) box.X_WO.push_back(options_.true_obstacles(t).at(n).X_WO);
+    }
+    return described;
+  }
+
+ private:
+  struct ShapeField {
+    Eigen::Vector3d half_extents_m;
+    std::shared_ptr<const SdfGrid> field_O;
+  };
+
+  void Learn(const OccupancyGrid& occupancy, EpisodeTime t) override {
+    Stopwatch stopwatch;
+    const std::vector<ObjectObservation> obstacles = options_.true_obstacles(t);
+    if (fields_.empty()) {
+      for (const ObjectObservation& obstacle : obstacles) {
+        fields_.push_back({HalfExtents(obstacle.shape),
+                           std::make_shared<const SdfGrid>(MakeShapeField(
+                               obstacle.shape, options_.grid.cell_m, options_.max_distance_m))});
+      }
+    }
+    OccupancyGrid still = occupancy;
+    const auto [nx, ny, nz] = still.spec.size;
+    for (int k = 0; k < nz; ++k) {
+      for (int j = 0; j < ny; ++j) {
+        for (int i = 0; i < nx; ++i) {
+          if (!still.At(i, j, k)) continue;
+          for (const ObjectObservation& obstacle : obstacles) {
+            // A quarter of a cell beyond the surface: a cell is filled when its centre is inside,
+            // and a rasteriser's rounding must not leave a skin of the obstacle behind.
+            const Eigen::Vector3d p_OCell = obstacle.X_WO.Inverse() * still.spec.Center(i, j, k);
+            if (SignedDistance(obstacle.shape, p_OCell) <= still.spec.cell_m / 4) {
+              still.cells[still.spec.Index(i, j, k)] = 0;
+            }
+          }
+        }
+      }
+    }
+    static_map_.Set(still);
+    times_.map_s += stopwatch.Lap();
+  }
+
+  std::shared_ptr<const DistanceField> Compose(std::shared_ptr<const SdfGrid> static_W) override {
+    std::vector<MovingField> moving;
+    for (std::size_t n = 0; n < fields_.size(); ++n) {
+      moving.push_back({fields_[n].field_O, [n, truth = options_.true_obstacles](EpisodeTime t) {
+                          return truth(t).at(n).X_WO;
+                        }});
+    }
+    return std::make_shared<CompositeField>(std::move(static_W), std::move(moving),
+                                            options_.max_distance_m);
+  }
+
+  std::vector<ShapeField> fields_;  // of each obstacle, in the order of true_obstacles
+};
+
+struct Word {
+  Knowledge knowledge;
+  const char* word;
+};
+constexpr Word kWords[] = {{Knowledge::kStatic, "static"},
+                           {Knowledge::kExecuteAndUpdate, "execute_and_update"},
+                           {Knowledge::kPrediction, "prediction"},
+                           {Knowledge::kFullKnowledge, "full_knowledge"}};
+
+}  // namespace
+
+std::string ToString(Knowledge knowledge) {
+  for (const Word& entry : kWords) {
+    if (entry.knowledge == knowledge) return entry.word;
+  }
+  throw std::invalid_argument("not a kind of knowledge");
+}
+
+Knowledge KnowledgeFromString(const std::string& word) {
+  for (const Word& entry : kWords) {
+    if (entry.word == word) return entry.knowledge;
+  }
+  throw std::invalid_argument("unknown knowledge '" + word +
+                              "'; there are: static, execute_and_update, prediction, "
+                              "full_knowledge");
+}
+
+std::unique_ptr<WorldModel> MakeWorldModel(const WorldModelOptions& options) {
+  CheckGridSpec(options.grid);
+  if (!(options.max_distance_m > 0)) {
+    throw std::invalid_argument("WorldModel: max_distance_m must be > 0");
+  }
+  MakePredictor(options.predictor);  // A wrong name is wrong even where it is not used.
+  switch (options.knowledge) {
+    case Knowledge::kStatic:
+      return std::make_unique<FirstSightWorld>(options);
+    case Knowledge::kExecuteAndUpdate:
+      return std::make_unique<FrozenWorld>(options);
+    case Knowledge::kPrediction:
+      return std::make_unique<PredictedWorld>(options);
+    case Knowledge::kFullKnowledge:
+      if (!options.true_obstacles) {
+        throw std::invalid_argument("WorldModel: full_knowledge needs true_obstacles");
+      }
+      return std::make_unique<KnownWorld>(options);
+  }
+  throw std::invalid_argument("WorldModel: not a kind of knowledge");
+}
+
+}  // namespace sidestep
