@@ -65,12 +65,13 @@ class FastDistanceTransform::Memory {
  public:
   Buffer sums, bits, slice_is_free, repeated, rising, falling;
   struct Worker {
-    Buffer row, free_side, filled_side, bits;
+    Buffer row, free_side, filled_side, bits, distances;
   };
   std::vector<Worker> workers;
 
   template <class Lane>
-  bool Run(const OccupancyGrid& occupancy, const DistanceTransformOptions& options, std::uint32_t far, bool may_saturate, float* distance_m) {
+  bool Run(const OccupancyGrid& occupancy, const DistanceTransformOptions& options,
+           std::uint32_t far, bool may_saturate, float* distance_m) {
     constexpr std::size_t kLanes = kColumnLanes<Lane>;
     Job<Lane> job;
     job.nx = static_cast<std::size_t>(occupancy.spec.size[0]);
@@ -82,17 +83,20 @@ class FastDistanceTransform::Memory {
     job.half_cell_m = occupancy.spec.cell_m / 2;
     job.max_distance_m = static_cast<float>(options.max_distance_m);
     job.may_saturate = may_saturate;
-    job.bypass_cache = occupancy.cells.size() * sizeof(float) > (std::size_t{16} << 20);
+    job.bypass_cache =
+        occupancy.cells.size() * sizeof(float) > (std::size_t{16} << 20) && !getenv("NOBYPASS");
     job.num_columns = DivideUp(job.nx, kLanes);
     job.words_per_row = DivideUp(job.nx, 64);
 
     const std::size_t longest = std::max({job.nx, job.ny, job.nz});
     job.costs.far = static_cast<Lane>(far);
     const auto cost = [&](std::size_t k) {
-      return static_cast<Lane>(std::min(far, AxisCost(static_cast<std::uint32_t>(k), options.convention)));
+      return static_cast<Lane>(
+          std::min(far, AxisCost(static_cast<std::uint32_t>(k), options.convention)));
     };
     std::uint32_t* repeat = repeated.Get<std::uint32_t>(longest + 1);
-    for (std::size_t k = 0; k <= longest; ++k) repeat[k] = cost(k) * (0xffffffffu / static_cast<Lane>(~Lane{0}));
+    for (std::size_t k = 0; k <= longest; ++k)
+      repeat[k] = cost(k) * (0xffffffffu / static_cast<Lane>(~Lane{0}));
     Lane* rise = rising.Get<Lane>(longest + kLanes);
     for (std::size_t k = 0; k < longest + kLanes; ++k) rise[k] = cost(k + 1);
     Lane* fall = falling.Get<Lane>(longest + kLanes);
@@ -115,9 +119,11 @@ class FastDistanceTransform::Memory {
       return Scratch<Lane>{worker.row.Get<Lane>((job.num_columns + 1) * kLanes),
                            worker.free_side.Get<Lane>(job.num_columns * column),
                            worker.filled_side.Get<Lane>(job.num_columns * column),
-                           worker.bits.Get<std::uint64_t>(job.ny * job.words_per_row)};
+                           worker.bits.Get<std::uint64_t>(job.ny * job.words_per_row),
+                           worker.distances.Get<float>(job.nx)};
     };
-    ParallelFor(options.num_threads, static_cast<int>(job.nz), [&](int w, int z) { fast_transform::TransformSlice(job, scratch_of(w), z); });
+    ParallelFor(options.num_threads, static_cast<int>(job.nz),
+                [&](int w, int z) { fast_transform::TransformSlice(job, scratch_of(w), z); });
     std::atomic<bool> saturated = false;
     ParallelFor(options.num_threads, static_cast<int>(job.ny), [&](int w, int y) {
       if (!saturated && !fast_transform::TransformPlane(job, scratch_of(w), y)) saturated = true;
@@ -131,17 +137,20 @@ FastDistanceTransform::~FastDistanceTransform() = default;
 FastDistanceTransform::FastDistanceTransform(FastDistanceTransform&&) noexcept = default;
 FastDistanceTransform& FastDistanceTransform::operator=(FastDistanceTransform&&) noexcept = default;
 
-void FastDistanceTransform::Compute(const OccupancyGrid& occupancy, const DistanceTransformOptions& options,
+void FastDistanceTransform::Compute(const OccupancyGrid& occupancy,
+                                    const DistanceTransformOptions& options,
                                     std::vector<float>& distance_m) {
   distance_m.resize(occupancy.cells.size());
   const std::size_t filled = occupancy.CountFilled();
   if (filled == 0 || filled == occupancy.cells.size()) {
-    const float distance = std::min(kNoSurfaceDistance_m, static_cast<float>(options.max_distance_m));
+    const float distance =
+        std::min(kNoSurfaceDistance_m, static_cast<float>(options.max_distance_m));
     std::fill(distance_m.begin(), distance_m.end(), filled == 0 ? distance : -distance);
     return;
   }
   std::uint32_t reach = 0;
-  for (const int size : occupancy.spec.size) reach += AxisCost(static_cast<std::uint32_t>(size - 1), options.convention);
+  for (const int size : occupancy.spec.size)
+    reach += AxisCost(static_cast<std::uint32_t>(size - 1), options.convention);
   const float limit = static_cast<float>(options.max_distance_m);
   // Smallest sum that is at or beyond the limit.
   std::uint32_t far = reach + 1;
@@ -149,19 +158,30 @@ void FastDistanceTransform::Compute(const OccupancyGrid& occupancy, const Distan
     std::uint32_t lo = 0, hi = far;
     while (lo < hi) {
       const std::uint32_t mid = (lo + hi) / 2;
-      const float m = static_cast<float>(occupancy.spec.cell_m / 2 * std::sqrt(static_cast<float>(SquaredHalfCells(mid, options.convention))));
-      if (m >= limit) hi = mid; else lo = mid + 1;
+      const float m = static_cast<float>(
+          occupancy.spec.cell_m / 2 *
+          std::sqrt(static_cast<float>(SquaredHalfCells(mid, options.convention))));
+      if (m >= limit)
+        hi = mid;
+      else
+        lo = mid + 1;
     }
     far = lo;
   }
-  if (far <= 0xff && options.min_lane_bits <= 8) { memory_->Run<std::uint8_t>(occupancy, options, far, false, distance_m.data()); return; }
+  if (far <= 0xff && options.min_lane_bits <= 8) {
+    memory_->Run<std::uint8_t>(occupancy, options, far, false, distance_m.data());
+    return;
+  }
   if (options.min_lane_bits <= 16) {
-    if (memory_->Run<std::uint16_t>(occupancy, options, std::min(far, 0xffffu), far > 0xffff, distance_m.data())) return;
+    if (memory_->Run<std::uint16_t>(occupancy, options, std::min(far, 0xffffu), far > 0xffff,
+                                    distance_m.data()))
+      return;
   }
   memory_->Run<std::uint32_t>(occupancy, options, far, false, distance_m.data());
 }
 
-SdfGrid FastDistanceTransform::Compute(const OccupancyGrid& occupancy, const DistanceTransformOptions& options) {
+SdfGrid FastDistanceTransform::Compute(const OccupancyGrid& occupancy,
+                                       const DistanceTransformOptions& options) {
   std::vector<float> distance_m;
   Compute(occupancy, options, distance_m);
   return SdfGrid(occupancy.spec, std::move(distance_m));

@@ -9,8 +9,8 @@
 // and picks one at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sdf/map/fast_distance_transform_kernels.cc"
-#include <hwy/foreach_target.h>
 #include <hwy/cache_control.h>
+#include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -25,7 +25,8 @@ using Vectors = hn::CappedTag<Lane, kColumnLanes<Lane>>;
 template <class Lane>
 std::uint64_t ColumnBits(const std::uint64_t* row_bits, std::size_t column) {
   constexpr std::size_t kLanes = kColumnLanes<Lane>;
-  return row_bits[column * kLanes / 64] >> (column * kLanes % 64) & (~std::uint64_t{0} >> (64 - kLanes));
+  return row_bits[column * kLanes / 64] >> (column * kLanes % 64) &
+         (~std::uint64_t{0} >> (64 - kLanes));
 }
 
 template <class D>
@@ -44,8 +45,8 @@ V SaturatedSum(D, V a, V b) {
   }
 }
 
-// Offers source + cost(1), source + cost(2), ... to the rows  first, first + step, ...  of a column,
-// `count` at the most, until none of its lanes takes one.
+// Offers source + cost(1), source + cost(2), ... to the rows  first, first + step, ...  of a
+// column, `count` at the most, until none of its lanes takes one.
 template <class Lane, std::ptrdiff_t step>
 void Offer(const Lane* source, std::size_t count, const std::uint32_t* costs) {
   const Vectors<Lane> d;
@@ -112,7 +113,8 @@ void Split(const Lane* sums, std::uint64_t bits, Lane* free_side, Lane* filled_s
 }
 
 template <class Lane>
-hn::Vec<Vectors<Lane>> Merged(const Lane* free_side, const Lane* filled_side, std::uint64_t bits, std::size_t i) {
+hn::Vec<Vectors<Lane>> Merged(const Lane* free_side, const Lane* filled_side, std::uint64_t bits,
+                              std::size_t i) {
   const Vectors<Lane> d;
   const auto value = hn::Load(d, free_side + i);
   if (bits == 0) return value;
@@ -139,7 +141,8 @@ inline bool PackRow(const std::uint8_t* cells, std::size_t nx, std::uint64_t* bi
   }
   if (i < nx) {
     std::uint64_t word = 0;
-    if (i + lanes <= nx) {}
+    if (i + lanes <= nx) {
+    }
     for (std::size_t j = i; j < nx; ++j) word |= std::uint64_t{cells[j] != 0} << (j - i);
     bits[i / 64] = word;
     any |= word;
@@ -148,7 +151,8 @@ inline bool PackRow(const std::uint8_t* cells, std::size_t nx, std::uint64_t* bi
 }
 
 template <class Lane>
-void WriteRun(const CostTables<Lane>& costs, bool from_before, bool from_after, std::size_t length, Lane* out) {
+void WriteRun(const CostTables<Lane>& costs, bool from_before, bool from_after, std::size_t length,
+              Lane* out) {
   const Vectors<Lane> d;
   const std::size_t lanes = hn::Lanes(d);
   const Lane* falling = costs.falling_end - length;
@@ -203,16 +207,19 @@ void Slice(const Job<Lane>& job, const Scratch<Lane>& scratch, std::size_t z) {
       continue;
     }
     any = true;
-    if (last == nullptr || !std::equal(bits, bits + words, last)) TransformRow(job, bits, scratch.row);
+    if (last == nullptr || !std::equal(bits, bits + words, last))
+      TransformRow(job, bits, scratch.row);
     last = bits;
     for (std::size_t c = 0; c < job.num_columns; ++c)
-      Split(scratch.row + c * kLanes, ColumnBits<Lane>(bits, c), scratch.free_side + c * pitch + offset,
-            scratch.filled_side + c * pitch + offset);
+      Split(scratch.row + c * kLanes, ColumnBits<Lane>(bits, c),
+            scratch.free_side + c * pitch + offset, scratch.filled_side + c * pitch + offset);
   }
   job.slice_is_free[z] = !any;
   if (!any) return;
   for (std::size_t c = 0; c < job.num_columns; ++c) {
-    const auto has_filled = [&](std::size_t y) { return ColumnBits<Lane>(scratch.bits + y * words, c) != 0; };
+    const auto has_filled = [&](std::size_t y) {
+      return ColumnBits<Lane>(scratch.bits + y * words, c) != 0;
+    };
     TransformLines(scratch.free_side + c * pitch, job.ny, job.costs.repeated);
     TransformFilledLines(scratch.filled_side + c * pitch, job.ny, job.costs.repeated, has_filled);
   }
@@ -223,7 +230,8 @@ void Slice(const Job<Lane>& job, const Scratch<Lane>& scratch, std::size_t z) {
       const std::uint64_t column_bits = ColumnBits<Lane>(bits, c);
       const std::size_t from = c * pitch + y * kLanes;
       for (std::size_t i = 0; i < kLanes; i += kPerVector)
-        hn::Store(Merged(scratch.free_side + from, scratch.filled_side + from, column_bits, i), d, out + c * kLanes + i);
+        hn::Store(Merged(scratch.free_side + from, scratch.filled_side + from, column_bits, i), d,
+                  out + c * kLanes + i);
     }
     std::copy_n(bits, words, job.bits + (y * job.nz + z) * words);
   }
@@ -236,20 +244,26 @@ template <class Lane>
 class Distances {
  public:
   explicit Distances(const Job<Lane>& job)
-      : surface_(job.convention == DistanceConvention::kSurface), half_cell_m_(hn::Set(dd_, job.half_cell_m)), max_(hn::Set(df_, job.max_distance_m)) {}
+      : surface_(job.convention == DistanceConvention::kSurface),
+        half_cell_m_(hn::Set(dd_, job.half_cell_m)),
+        max_(hn::Set(df_, job.max_distance_m)) {}
   hn::Vec<FloatTag> operator()(const Lane* sums, const std::uint8_t* cells) const {
     const hn::Rebind<Lane, decltype(d32_)> d_lane;
     const hn::Rebind<std::uint8_t, decltype(d32_)> d8;
     hn::Vec<decltype(d32_)> s;
-    if constexpr (sizeof(Lane) == 4) s = hn::LoadU(d32_, sums);
-    else s = hn::PromoteTo(d32_, hn::LoadU(d_lane, sums));
+    if constexpr (sizeof(Lane) == 4)
+      s = hn::LoadU(d32_, sums);
+    else
+      s = hn::PromoteTo(d32_, hn::LoadU(d_lane, sums));
     s = surface_ ? hn::Sub(hn::Add(s, s), hn::And(s, hn::Set(d32_, 3))) : hn::ShiftLeft<2>(s);
     const auto half_cells = hn::Sqrt(hn::ConvertTo(df_, hn::BitCast(di_, s)));
-    const auto distance = hn::Min(hn::DemoteTo(df_, hn::Mul(half_cell_m_, hn::PromoteTo(dd_, half_cells))), max_);
+    const auto distance =
+        hn::Min(hn::DemoteTo(df_, hn::Mul(half_cell_m_, hn::PromoteTo(dd_, half_cells))), max_);
     const auto occ = hn::PromoteTo(d32_, hn::LoadU(d8, cells));
     const auto sign = hn::IfThenElseZero(hn::Ne(occ, hn::Zero(d32_)), hn::Set(d32_, 0x80000000u));
     return hn::Or(distance, hn::BitCast(df_, sign));
   }
+
  private:
   static constexpr hn::ScalableTag<double> dd_{};
   static constexpr FloatTag df_{};
@@ -260,28 +274,41 @@ class Distances {
   hn::Vec<FloatTag> max_;
 };
 
+// Copies a row past the caches, which would be of no use to it: whole cache lines by non-temporal
+// stores, the partial ones at its ends, shared with its neighbours, by ordinary ones.
+inline void StreamRow(const float* row, std::size_t n, float* out) {
+  constexpr std::size_t kLine = 64 / sizeof(float);
+  const hn::CappedTag<float, kLine> d;
+  const std::size_t misaligned = reinterpret_cast<std::uintptr_t>(out) / sizeof(float) % kLine;
+  std::size_t i = std::min(n, (kLine - misaligned) % kLine);
+  std::copy_n(row, i, out);
+  for (; i + kLine <= n; i += kLine)
+    for (std::size_t j = 0; j < kLine; j += hn::Lanes(d))
+      hn::Stream(hn::LoadU(d, row + i + j), d, out + i + j);
+  std::copy(row + i, row + n, out + i);
+}
+
 template <class Lane>
-void WriteRow(const Job<Lane>& job, const Distances<Lane>& distances, const Lane* sums, const std::uint8_t* cells, float* out) {
+void WriteRow(const Job<Lane>& job, const Distances<Lane>& distances, const Lane* sums,
+              const std::uint8_t* cells, float* staging, float* out) {
   const FloatTag df;
   const std::size_t lanes = hn::Lanes(df);
   const std::size_t n = job.nx;
   if (n < lanes) {
     for (std::size_t i = 0; i < n; ++i) {
       const float root = std::sqrt(static_cast<float>(SquaredHalfCells(sums[i], job.convention)));
-      const float distance = std::min(static_cast<float>(job.half_cell_m * root), job.max_distance_m);
+      const float distance =
+          std::min(static_cast<float>(job.half_cell_m * root), job.max_distance_m);
       out[i] = cells[i] != 0 ? -distance : distance;
     }
     return;
   }
-  std::size_t i = 0;
-  if (job.bypass_cache) {
-    const std::size_t misaligned = reinterpret_cast<std::uintptr_t>(out) / sizeof(float) % lanes;
-    if (misaligned != 0) { hn::StoreU(distances(sums, cells), df, out); i = lanes - misaligned; }
-    for (; i + lanes <= n; i += lanes) hn::Stream(distances(sums + i, cells + i), df, out + i);
-  } else {
-    for (; i + lanes <= n; i += lanes) hn::StoreU(distances(sums + i, cells + i), df, out + i);
-  }
-  if (i < n) hn::StoreU(distances(sums + n - lanes, cells + n - lanes), df, out + n - lanes);
+  float* row = job.bypass_cache ? staging : out;
+  for (std::size_t i = 0; i + lanes <= n; i += lanes)
+    hn::StoreU(distances(sums + i, cells + i), df, row + i);
+  if (n % lanes != 0)
+    hn::StoreU(distances(sums + n - lanes, cells + n - lanes), df, row + n - lanes);
+  if (job.bypass_cache) StreamRow(row, n, out);
 }
 
 template <class Lane>
@@ -294,13 +321,17 @@ bool Plane(const Job<Lane>& job, const Scratch<Lane>& scratch, std::size_t y) {
   Lane* plane = job.sums + y * job.plane_pitch;
   const std::uint64_t* plane_bits = job.bits + y * job.nz * words;
   for (std::size_t c = 0; c < job.num_columns; ++c) {
-    const auto bits_of = [&](std::size_t z) -> std::uint64_t { return job.slice_is_free[z] ? 0 : ColumnBits<Lane>(plane_bits + z * words, c); };
+    const auto bits_of = [&](std::size_t z) -> std::uint64_t {
+      return job.slice_is_free[z] ? 0 : ColumnBits<Lane>(plane_bits + z * words, c);
+    };
     const auto has_filled = [&](std::size_t z) { return bits_of(z) != 0; };
     for (std::size_t z = 0; z < job.nz; ++z) {
       if (job.slice_is_free[z]) {
-        for (std::size_t i = 0; i < kLanes; i += kPerVector) hn::Store(hn::Set(d, job.costs.far), d, scratch.free_side + z * kLanes + i);
+        for (std::size_t i = 0; i < kLanes; i += kPerVector)
+          hn::Store(hn::Set(d, job.costs.far), d, scratch.free_side + z * kLanes + i);
       } else {
-        Split(plane + z * row_pitch + c * kLanes, bits_of(z), scratch.free_side + z * kLanes, scratch.filled_side + z * kLanes);
+        Split(plane + z * row_pitch + c * kLanes, bits_of(z), scratch.free_side + z * kLanes,
+              scratch.filled_side + z * kLanes);
       }
     }
     TransformLines(scratch.free_side, job.nz, job.costs.repeated);
@@ -309,7 +340,8 @@ bool Plane(const Job<Lane>& job, const Scratch<Lane>& scratch, std::size_t y) {
     for (std::size_t i = 0; i < kLanes; i += kPerVector) {
       auto largest = hn::Zero(d);
       for (std::size_t z = 0; z < job.nz; ++z) {
-        const auto v = Merged(scratch.free_side + z * kLanes, scratch.filled_side + z * kLanes, bits_of(z), i);
+        const auto v =
+            Merged(scratch.free_side + z * kLanes, scratch.filled_side + z * kLanes, bits_of(z), i);
         largest = hn::Max(largest, v);
         hn::Store(v, d, plane + z * row_pitch + c * kLanes + i);
       }
@@ -322,18 +354,31 @@ bool Plane(const Job<Lane>& job, const Scratch<Lane>& scratch, std::size_t y) {
   const Distances<Lane> distances(job);
   for (std::size_t z = 0; z < job.nz; ++z) {
     const std::size_t first = (z * job.ny + y) * job.nx;
-    WriteRow(job, distances, plane + z * row_pitch, job.cells + first, job.distance_m + first);
+    WriteRow(job, distances, plane + z * row_pitch, job.cells + first, scratch.distances,
+             job.distance_m + first);
   }
   if (job.bypass_cache) hwy::FlushStream();
   return true;
 }
 
-void Slice8(const Job<std::uint8_t>& j, const Scratch<std::uint8_t>& s, std::size_t z) { Slice(j, s, z); }
-void Slice16(const Job<std::uint16_t>& j, const Scratch<std::uint16_t>& s, std::size_t z) { Slice(j, s, z); }
-void Slice32(const Job<std::uint32_t>& j, const Scratch<std::uint32_t>& s, std::size_t z) { Slice(j, s, z); }
-bool Plane8(const Job<std::uint8_t>& j, const Scratch<std::uint8_t>& s, std::size_t y) { return Plane(j, s, y); }
-bool Plane16(const Job<std::uint16_t>& j, const Scratch<std::uint16_t>& s, std::size_t y) { return Plane(j, s, y); }
-bool Plane32(const Job<std::uint32_t>& j, const Scratch<std::uint32_t>& s, std::size_t y) { return Plane(j, s, y); }
+void Slice8(const Job<std::uint8_t>& j, const Scratch<std::uint8_t>& s, std::size_t z) {
+  Slice(j, s, z);
+}
+void Slice16(const Job<std::uint16_t>& j, const Scratch<std::uint16_t>& s, std::size_t z) {
+  Slice(j, s, z);
+}
+void Slice32(const Job<std::uint32_t>& j, const Scratch<std::uint32_t>& s, std::size_t z) {
+  Slice(j, s, z);
+}
+bool Plane8(const Job<std::uint8_t>& j, const Scratch<std::uint8_t>& s, std::size_t y) {
+  return Plane(j, s, y);
+}
+bool Plane16(const Job<std::uint16_t>& j, const Scratch<std::uint16_t>& s, std::size_t y) {
+  return Plane(j, s, y);
+}
+bool Plane32(const Job<std::uint32_t>& j, const Scratch<std::uint32_t>& s, std::size_t y) {
+  return Plane(j, s, y);
+}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace sidestep::fast_transform
@@ -348,11 +393,23 @@ HWY_EXPORT(Plane8);
 HWY_EXPORT(Plane16);
 HWY_EXPORT(Plane32);
 
-void TransformSlice(const Job<std::uint8_t>& job, const Scratch<std::uint8_t>& scratch, int z) { HWY_DYNAMIC_DISPATCH(Slice8)(job, scratch, z); }
-void TransformSlice(const Job<std::uint16_t>& job, const Scratch<std::uint16_t>& scratch, int z) { HWY_DYNAMIC_DISPATCH(Slice16)(job, scratch, z); }
-void TransformSlice(const Job<std::uint32_t>& job, const Scratch<std::uint32_t>& scratch, int z) { HWY_DYNAMIC_DISPATCH(Slice32)(job, scratch, z); }
-bool TransformPlane(const Job<std::uint8_t>& job, const Scratch<std::uint8_t>& scratch, int y) { return HWY_DYNAMIC_DISPATCH(Plane8)(job, scratch, y); }
-bool TransformPlane(const Job<std::uint16_t>& job, const Scratch<std::uint16_t>& scratch, int y) { return HWY_DYNAMIC_DISPATCH(Plane16)(job, scratch, y); }
-bool TransformPlane(const Job<std::uint32_t>& job, const Scratch<std::uint32_t>& scratch, int y) { return HWY_DYNAMIC_DISPATCH(Plane32)(job, scratch, y); }
+void TransformSlice(const Job<std::uint8_t>& job, const Scratch<std::uint8_t>& scratch, int z) {
+  HWY_DYNAMIC_DISPATCH(Slice8)(job, scratch, z);
+}
+void TransformSlice(const Job<std::uint16_t>& job, const Scratch<std::uint16_t>& scratch, int z) {
+  HWY_DYNAMIC_DISPATCH(Slice16)(job, scratch, z);
+}
+void TransformSlice(const Job<std::uint32_t>& job, const Scratch<std::uint32_t>& scratch, int z) {
+  HWY_DYNAMIC_DISPATCH(Slice32)(job, scratch, z);
+}
+bool TransformPlane(const Job<std::uint8_t>& job, const Scratch<std::uint8_t>& scratch, int y) {
+  return HWY_DYNAMIC_DISPATCH(Plane8)(job, scratch, y);
+}
+bool TransformPlane(const Job<std::uint16_t>& job, const Scratch<std::uint16_t>& scratch, int y) {
+  return HWY_DYNAMIC_DISPATCH(Plane16)(job, scratch, y);
+}
+bool TransformPlane(const Job<std::uint32_t>& job, const Scratch<std::uint32_t>& scratch, int y) {
+  return HWY_DYNAMIC_DISPATCH(Plane32)(job, scratch, y);
+}
 }  // namespace sidestep::fast_transform
 #endif

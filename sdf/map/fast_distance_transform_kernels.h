@@ -105,6 +105,7 @@ struct Scratch {
   Lane* free_side = nullptr;      ///< [column][max(ny, nz)][lane]
   Lane* filled_side = nullptr;    ///< the same
   std::uint64_t* bits = nullptr;  ///< [y][word]
+  float* distances = nullptr;     ///< a row of them: nx
 };
 
 /// The passes along x and y for slice z.

@@ -18,7 +18,7 @@ struct ObjectTrackerOptions {
   double max_speed_m_s = 4;    ///< the gate: a thing cannot have gone further since last seen
   double moved_cells = 0.75;   ///< a thing that is this far from where it began is moving
   HorizonOffset settle{0.06};  ///< a thing seen for this long that has not moved is static
-  HorizonOffset rest{0.25};    ///< the same for a thing that is known to have moved before
+  HorizonOffset rest{0.4};     ///< the same for a thing that is known to have moved before
   HorizonOffset memory{2};     ///< how far back a history reaches
   int max_missed_scans = 3;    ///< a moving thing unseen for more scans in a row is given up
 };

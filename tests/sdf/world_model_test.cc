@@ -1,0 +1,234 @@
+#include "sdf/world_model.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/shape.h"
+#include "tests/sdf/box_scene.h"
+
+namespace sidestep {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+using ::testing::Throws;
+
+constexpr double kClamp_m = 0.32;
+
+// A shelf, and a box of whole cells that passes it with 1.2 m/s: at 30 Hz exactly a cell a frame.
+const Eigen::Vector3d kBoxSize_m(0.24, 0.32, 0.64);
+const Eigen::Vector3d kBoxStart(0, 1.2, 0.12);
+const Eigen::Vector3d kBoxVelocity(0, -1.2, 0);
+GridSpec Grid() { return {{-0.98, -0.98, -0.98}, 0.04, {50, 64, 50}}; }
+SceneBox Shelf() { return StillBox({0.4, 1.2, 0.08}, {-0.4, 0, 0.2}); }
+SceneBox PassingBox() { return MovingBox(kBoxSize_m, kBoxStart, kBoxVelocity); }
+
+Scan ScanAt(EpisodeTime t) { return MakeScan(Rasterise({Shelf(), PassingBox()}, Grid(), t), t); }
+
+std::vector<ObjectObservation> Truth(EpisodeTime t) {
+  ObjectObservation box;
+  box.id = "box";
+  box.t = t;
+  box.X_WO = Pose::Translation(PassingBox().p_WO(t));
+  box.shape = Box{kBoxSize_m};
+  return {box};
+}
+
+WorldModelOptions Options(Knowledge knowledge) {
+  WorldModelOptions options;
+  options.knowledge = knowledge;
+  options.grid = Grid();
+  options.max_distance_m = kClamp_m;
+  if (knowledge == Knowledge::kFullKnowledge) options.true_obstacles = &Truth;
+  return options;
+}
+
+// Half a second of scans at 30 Hz; the last is at t = 0.5 s.
+std::unique_ptr<WorldModel> Watched(Knowledge knowledge, double until_s = 0.5) {
+  auto world = MakeWorldModel(Options(knowledge));
+  for (int frame = 0; frame / 30.0 < until_s + 1e-9; ++frame) {
+    world->Observe(ScanAt(EpisodeTime(frame / 30.0)));
+  }
+  return world;
+}
+
+// Where the box is believed to be at t: the way along y through its true middle is searched.
+std::vector<double> FilledAlongY(const DistanceField& field, EpisodeTime t) {
+  std::vector<double> y_m;
+  for (double y = -0.97; y < 1.5; y += 0.005) {
+    if (field.Sample({0, y, 0.1}, t).distance_m < 0) y_m.push_back(y);
+  }
+  return y_m;
+}
+
+void ExpectBoxAt(double y_m, const DistanceField& field, EpisodeTime t) {
+  SCOPED_TRACE(testing::Message() << "asked about " << t.seconds() << " s");
+  const std::vector<double> filled = FilledAlongY(field, t);
+  ASSERT_FALSE(filled.empty());
+  EXPECT_NEAR((filled.front() + filled.back()) / 2, y_m, 0.011);
+  EXPECT_NEAR(filled.back() - filled.front(), kBoxSize_m.y(), 0.011);
+}
+
+double TrueY(double t_s) { return PassingBox().p_WO(EpisodeTime(t_s)).y(); }
+
+TEST(WorldModel, KeepsTheFirstScanUnderStaticKnowledge) {
+  const auto field = Watched(Knowledge::kStatic)->MakeField();
+  for (const double t_s : {0.0, 0.5, 1.5}) ExpectBoxAt(TrueY(0), *field, EpisodeTime(t_s));
+}
+
+TEST(WorldModel, FreezesTheLatestScanUnderExecuteAndUpdate) {
+  const auto field = Watched(Knowledge::kExecuteAndUpdate)->MakeField();
+  for (const double t_s : {0.0, 0.5, 1.5}) ExpectBoxAt(TrueY(0.5), *field, EpisodeTime(t_s));
+}
+
+TEST(WorldModel, PutsTheBoxWhereItWillBeUnderPrediction) {
+  const auto field = Watched(Knowledge::kPrediction)->MakeField();
+  for (const double t_s : {0.4, 0.5, 0.9, 1.5}) {
+    ExpectBoxAt(TrueY(t_s), *field, EpisodeTime(t_s));
+  }
+}
+
+TEST(WorldModel, PutsTheBoxWhereItTrulyIsUnderFullKnowledge) {
+  const auto field = Watched(Knowledge::kFullKnowledge, /*until_s=*/0)->MakeField();
+  for (const double t_s : {0.0, 0.5, 1.5}) ExpectBoxAt(TrueY(t_s), *field, EpisodeTime(t_s));
+}
+
+class EveryKnowledge : public ::testing::TestWithParam<Knowledge> {};
+
+TEST_P(EveryKnowledge, KnowsWhatDoesNotMove) {
+  const auto field = Watched(GetParam())->MakeField();
+  EXPECT_EQ(field->max_distance_m(), kClamp_m);
+  const DistanceSample above_shelf = field->Sample({-0.4, -0.3, 0.34}, EpisodeTime(0.5));
+  EXPECT_NEAR(above_shelf.distance_m, 0.1, 1e-6);
+  EXPECT_LT((above_shelf.gradient_W - Eigen::Vector3d::UnitZ()).norm(), 1e-5);
+  EXPECT_FALSE(field->Sample({5, 0, 0}, EpisodeTime(0.5)).in_grid);
+}
+
+TEST_P(EveryKnowledge, LeavesEarlierFieldsAsTheyWere) {
+  const auto world = Watched(GetParam());
+  const auto field = world->MakeField();
+  const Eigen::Vector3d p(0.1, 0.3, 0.1);
+  const double before_m = field->Sample(p, EpisodeTime(0.6)).distance_m;
+  for (int frame = 16; frame < 30; ++frame) world->Observe(ScanAt(EpisodeTime(frame / 30.0)));
+  const auto later = world->MakeField();
+  EXPECT_EQ(field->Sample(p, EpisodeTime(0.6)).distance_m, before_m);
+}
+
+TEST_P(EveryKnowledge, GivesTheSameBitsForTheSameScans) {
+  const auto one = Watched(GetParam())->MakeField();
+  const auto other = Watched(GetParam())->MakeField();
+  for (double x = -0.9; x < 1; x += 0.07) {
+    for (double y = -0.9; y < 1.5; y += 0.07) {
+      const Eigen::Vector3d p(x, y, 0.1);
+      const DistanceSample a = one->Sample(p, EpisodeTime(0.83));
+      const DistanceSample b = other->Sample(p, EpisodeTime(0.83));
+      ASSERT_EQ(a.distance_m, b.distance_m);
+      ASSERT_EQ(a.gradient_W, b.gradient_W);
+    }
+  }
+}
+
+TEST_P(EveryKnowledge, NeedsAScanAndTakesScansInOrder) {
+  const auto world = MakeWorldModel(Options(GetParam()));
+  EXPECT_THROW(world->MakeField(), std::invalid_argument);
+  world->Observe(ScanAt(EpisodeTime(1)));
+  EXPECT_THROW(world->Observe(ScanAt(EpisodeTime(0.9))), std::invalid_argument);
+}
+
+TEST_P(EveryKnowledge, AnswersTheClampInAnEmptyWorld) {
+  WorldModelOptions options = Options(GetParam());
+  options.true_obstacles = [](EpisodeTime) { return std::vector<ObjectObservation>(); };
+  const auto world = MakeWorldModel(options);
+  world->Observe(Scan());
+  const DistanceSample sample = world->MakeField()->Sample({0, 0, 0}, EpisodeTime(0));
+  EXPECT_EQ(sample.distance_m, kClamp_m);
+  EXPECT_TRUE(sample.in_grid);
+  EXPECT_THAT(world->DescribeObjects({EpisodeTime(0)}), IsEmpty());
+}
+
+TEST_P(EveryKnowledge, ReportsItsTimesOnce) {
+  const auto world = Watched(GetParam());
+  world->MakeField();
+  EXPECT_GT(world->TakeTimes().map_s, 0);
+  EXPECT_EQ(world->TakeTimes().map_s, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, EveryKnowledge, ::testing::ValuesIn(kAllKnowledge),
+                         [](const auto& test) { return ToString(test.param); });
+
+TEST(WorldModel, DescribesWhatItPredictsByTheBoxAroundIt) {
+  for (const Knowledge knowledge : {Knowledge::kPrediction, Knowledge::kFullKnowledge}) {
+    SCOPED_TRACE(ToString(knowledge));
+    const auto world = Watched(knowledge);
+    world->MakeField();
+    const std::vector<EpisodeTime> times = {EpisodeTime(0.5), EpisodeTime(1.0)};
+    const std::vector<PredictedObject> objects = world->DescribeObjects(times);
+    ASSERT_THAT(objects, SizeIs(1));
+    EXPECT_LT((objects[0].half_extents_m - kBoxSize_m / 2).norm(), 1e-9);
+    EXPECT_EQ(objects[0].t, times);
+    ASSERT_THAT(objects[0].X_WO, SizeIs(2));
+    for (std::size_t n = 0; n < times.size(); ++n) {
+      const Eigen::Vector3d p_WBox = PassingBox().p_WO(times[n]);
+      EXPECT_LT((objects[0].X_WO[n].translation() - p_WBox).norm(), 1e-9);
+    }
+  }
+}
+
+TEST(WorldModel, DescribesNoObjectsWhereItKnowsOfNone) {
+  for (const Knowledge knowledge : {Knowledge::kStatic, Knowledge::kExecuteAndUpdate}) {
+    const auto world = Watched(knowledge);
+    world->MakeField();
+    EXPECT_THAT(world->DescribeObjects({EpisodeTime(1)}), IsEmpty());
+  }
+}
+
+TEST(WorldModel, LeavesTheBoxWhereItIsWithAPredictorThatSaysSo) {
+  WorldModelOptions options = Options(Knowledge::kPrediction);
+  options.predictor = "stationary";
+  const auto world = MakeWorldModel(options);
+  for (int frame = 0; frame <= 15; ++frame) world->Observe(ScanAt(EpisodeTime(frame / 30.0)));
+  ExpectBoxAt(TrueY(0.5), *world->MakeField(), EpisodeTime(1.5));
+}
+
+TEST(WorldModel, TakesNothingOfATrueObstacleForStaticUnderFullKnowledge) {
+  const auto field = Watched(Knowledge::kFullKnowledge, /*until_s=*/0.2)->MakeField();
+  // Once the box has gone on, the place where it was scanned is free, far from the shelf.
+  EXPECT_EQ(field->Sample(PassingBox().p_WO(EpisodeTime(0.2)), EpisodeTime(3)).distance_m,
+            kClamp_m);
+}
+
+TEST(WorldModel, RefusesOptionsThatMeanNothing) {
+  WorldModelOptions options = Options(Knowledge::kPrediction);
+  options.predictor = "crystal_ball";
+  EXPECT_THAT([&] { MakeWorldModel(options); }, Throws<std::invalid_argument>());
+  for (const double clamp_m : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    options = Options(Knowledge::kStatic);
+    options.max_distance_m = clamp_m;
+    EXPECT_THAT([&] { MakeWorldModel(options); }, Throws<std::invalid_argument>());
+  }
+  options = Options(Knowledge::kStatic);
+  options.grid.cell_m = 0;
+  EXPECT_THAT([&] { MakeWorldModel(options); }, Throws<std::invalid_argument>());
+  options = Options(Knowledge::kFullKnowledge);
+  options.true_obstacles = nullptr;
+  EXPECT_THAT([&] { MakeWorldModel(options); }, Throws<std::invalid_argument>());
+}
+
+TEST(Knowledge, HasAWordForEachKindAndBack) {
+  for (const Knowledge knowledge : kAllKnowledge) {
+    EXPECT_EQ(KnowledgeFromString(ToString(knowledge)), knowledge);
+  }
+  EXPECT_EQ(ToString(Knowledge::kExecuteAndUpdate), "execute_and_update");
+  EXPECT_THROW(KnowledgeFromString("omniscience"), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace sidestep
