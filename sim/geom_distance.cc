@@ -1,13 +1,5 @@
 #include "sim/geom_distance.h"
 
-#include <fcl/geometry/shape/box.h>
-#include <fcl/geometry/shape/capsule.h>
-#include <fcl/geometry/shape/convex.h>
-#include <fcl/geometry/shape/cylinder.h>
-#include <fcl/geometry/shape/ellipsoid.h>
-#include <fcl/geometry/shape/sphere.h>
-#include <fcl/narrowphase/distance.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,60 +8,46 @@
 #include <utility>
 #include <vector>
 
+#include "sim/convex_distance.h"
 #include "sim/geom_solids.h"
 #include "sim/mujoco_pose.h"
 
 namespace sidestep {
 namespace {
 
-using FclGeometry = std::unique_ptr<fcl::CollisionGeometryd>;
-
-FclGeometry MakeConvex(const ConvexHull& hull) {
-  auto faces = std::make_shared<std::vector<int>>();
-  for (const std::array<int, 3>& face : hull.faces) {
-    faces->push_back(3);
-    faces->insert(faces->end(), face.begin(), face.end());
-  }
-  return std::make_unique<fcl::Convexd>(
-      std::make_shared<const std::vector<Eigen::Vector3d>>(hull.vertices),
-      static_cast<int>(hull.faces.size()), faces);
+ConvexSolid FromHull(const ConvexHull& hull) {
+  ConvexSolid solid;
+  solid.core = ConvexSolid::Core::kHull;
+  solid.vertices = hull.vertices;
+  return solid;
 }
 
-// Null for what is not convex and bounded.
-FclGeometry MakeFclGeometry(const mjModel& model, int geom) {
-  const mjtNum* size = model.geom_size + 3 * geom;
+std::optional<ConvexSolid> FromGeom(const mjModel& model, int geom) {
+  const Eigen::Map<const Eigen::Vector3d> size(model.geom_size + 3 * geom);
+  using Core = ConvexSolid::Core;
   switch (model.geom_type[geom]) {
     case mjGEOM_SPHERE:
-      return std::make_unique<fcl::Sphered>(size[0]);
+      return ConvexSolid{Core::kPoint, {0, 0, 0}, {}, size(0)};
     case mjGEOM_CAPSULE:
-      return std::make_unique<fcl::Capsuled>(size[0], 2 * size[1]);
+      return ConvexSolid{Core::kSegment, {0, 0, size(1)}, {}, size(0)};
     case mjGEOM_ELLIPSOID:
-      return std::make_unique<fcl::Ellipsoidd>(size[0], size[1], size[2]);
+      return ConvexSolid{Core::kEllipsoid, size, {}, 0};
     case mjGEOM_CYLINDER:
-      return std::make_unique<fcl::Cylinderd>(size[0], 2 * size[1]);
+      return ConvexSolid{Core::kCylinder, {size(0), 0, size(1)}, {}, 0};
     case mjGEOM_BOX:
-      return std::make_unique<fcl::Boxd>(2 * size[0], 2 * size[1], 2 * size[2]);
+      return ConvexSolid{Core::kBox, size, {}, 0};
     case mjGEOM_MESH:
-      return MakeConvex(HullOfMesh(model, model.geom_dataid[geom]));
+      return FromHull(HullOfMesh(model, model.geom_dataid[geom]));
     default:
-      return nullptr;
+      return std::nullopt;
   }
 }
 
-fcl::Transform3d ToFcl(const mjData& data, int geom) {
-  fcl::Transform3d X = fcl::Transform3d::Identity();
-  X.linear() = GeomRotation(data, geom);
-  X.translation() = GeomPosition(data, geom);
-  return X;
-}
-
-double ConvexDistance(const fcl::CollisionGeometryd& a, const fcl::Transform3d& X_WA,
-                      const fcl::CollisionGeometryd& b, const fcl::Transform3d& X_WB) {
-  const fcl::DistanceRequestd request(/*enable_nearest_points=*/false,
-                                      /*enable_signed_distance=*/false, /*rel_err=*/0,
-                                      /*abs_err=*/0, /*distance_tolerance=*/1e-9, fcl::GST_LIBCCD);
-  fcl::DistanceResultd result;
-  return std::max(0.0, fcl::distance(&a, X_WA, &b, X_WB, request, result));
+Eigen::Isometry3d GeomFrame(const mjData& data, int geom) {
+  Eigen::Isometry3d X_WG = Eigen::Isometry3d::Identity();
+  X_WG.linear() = GeomRotation(data, geom);
+  X_WG.translation() = GeomPosition(data, geom);
+  return X_WG;
 }
 
 // How far a geom reaches from its own centre against the unit vector n_W.
@@ -108,14 +86,14 @@ double PlaneDistance(const mjModel& model, const mjData& data, int plane, int ge
 }
 
 struct Prism {
-  FclGeometry geometry;
+  ConvexSolid solid;
   Eigen::Vector3d lower_m, upper_m;  // the box around it, in the height field's frame
 };
 
 std::vector<Prism> MakePrisms(const mjModel& model, int hfield) {
   std::vector<Prism> prisms;
   for (const ConvexHull& hull : HeightField(model, hfield).Prisms()) {
-    Prism prism{MakeConvex(hull), hull.vertices[0], hull.vertices[0]};
+    Prism prism{FromHull(hull), hull.vertices[0], hull.vertices[0]};
     for (const Eigen::Vector3d& vertex : hull.vertices) {
       prism.lower_m = prism.lower_m.cwiseMin(vertex);
       prism.upper_m = prism.upper_m.cwiseMax(vertex);
@@ -128,8 +106,8 @@ std::vector<Prism> MakePrisms(const mjModel& model, int hfield) {
 }  // namespace
 
 struct GeomDistance::Solids {
-  std::vector<FclGeometry> convex;         ///< one a geom, null for planes and height fields
-  std::vector<std::vector<Prism>> prisms;  ///< one list a geom, filled for height fields
+  std::vector<std::optional<ConvexSolid>> convex;  ///< one a geom; none: a plane, a height field
+  std::vector<std::vector<Prism>> prisms;          ///< one list a geom, filled for height fields
 };
 
 std::optional<Touch> FindTouch(const mjModel& model, const mjData& data, int geom1, int geom2) {
@@ -154,7 +132,7 @@ GeomDistance::GeomDistance(const mjModel& model) : model_(model) {
   for (int i = 0; i < model.ngeom; ++i) {
     if (model.geom_contype[i] == 0 && model.geom_conaffinity[i] == 0) continue;  // a picture
     const auto index = static_cast<std::size_t>(i);
-    solids->convex[index] = MakeFclGeometry(model, i);
+    solids->convex[index] = FromGeom(model, i);
     if (model.geom_type[i] == mjGEOM_HFIELD) {
       solids->prisms[index] = MakePrisms(model, model.geom_dataid[i]);
     }
@@ -173,21 +151,21 @@ double GeomDistance::LowerBound(const mjData& data, int geom1, int geom2) const 
 
 double GeomDistance::Distance(const mjData& data, int geom1, int geom2) const {
   if (!solids_->convex[static_cast<std::size_t>(geom1)]) std::swap(geom1, geom2);
-  const FclGeometry& convex1 = solids_->convex[static_cast<std::size_t>(geom1)];
+  const std::optional<ConvexSolid>& convex1 = solids_->convex[static_cast<std::size_t>(geom1)];
   if (!convex1) throw std::invalid_argument("GeomDistance: one of two geoms must be convex");
   if (model_.geom_type[geom2] == mjGEOM_PLANE) {
     return PlaneDistance(model_, data, geom2, geom1);
   }
-  const fcl::Transform3d X_W1 = ToFcl(data, geom1), X_W2 = ToFcl(data, geom2);
-  const FclGeometry& convex2 = solids_->convex[static_cast<std::size_t>(geom2)];
-  if (convex2) return ConvexDistance(*convex1, X_W1, *convex2, X_W2);
+  const Eigen::Isometry3d X_21 = GeomFrame(data, geom2).inverse() * GeomFrame(data, geom1);
+  const std::optional<ConvexSolid>& convex2 = solids_->convex[static_cast<std::size_t>(geom2)];
+  if (convex2) return ConvexDistance(*convex2, *convex1, X_21);
 
-  const Eigen::Vector3d centre = X_W2.inverse() * X_W1.translation();
+  const Eigen::Vector3d centre = X_21.translation();
   double least = std::numeric_limits<double>::infinity();
   for (const Prism& prism : solids_->prisms[static_cast<std::size_t>(geom2)]) {
     const Eigen::Vector3d nearest = centre.cwiseMax(prism.lower_m).cwiseMin(prism.upper_m);
     if ((nearest - centre).norm() - model_.geom_rbound[geom1] >= least) continue;
-    least = std::min(least, ConvexDistance(*convex1, X_W1, *prism.geometry, X_W2));
+    least = std::min(least, ConvexDistance(prism.solid, *convex1, X_21));
   }
   return least;
 }

@@ -20,11 +20,9 @@ struct Touch {
 /// or height fields never touch.
 std::optional<Touch> FindTouch(const mjModel& model, const mjData& data, int geom1, int geom2);
 
-/// Measures how far geoms are apart.
-///
-/// Sphere, capsule, ellipsoid, cylinder, box and convex mesh: by FCL's GJK (errors below 1e-6 m
-/// with the tolerance set here; its defaults are up to 2 mm wrong). A plane: in closed form. A
-/// height field: as the prisms under its triangles.
+/// Measures how far geoms are apart, to 1e-9 m. Sphere, capsule, ellipsoid, cylinder, box and
+/// convex mesh: sim/convex_distance.h. A plane: in closed form. A height field: as the prisms under
+/// its triangles.
 class GeomDistance {
  public:
   /// @param model must outlive this.

@@ -56,4 +56,6 @@ std::optional<std::string> MujocoWarning(const mjData& data) {
   return std::nullopt;
 }
 
+std::string MujocoVersion() { return mj_versionString(); }
+
 }  // namespace sidestep

@@ -23,6 +23,9 @@ struct MujocoDeleter {
 using MujocoModelPtr = std::unique_ptr<mjModel, MujocoDeleter>;
 using MujocoDataPtr = std::unique_ptr<mjData, MujocoDeleter>;
 
+/// "2.2.2".
+std::string MujocoVersion();
+
 /// Compiles an MJCF text that refers to no other file. Safe from many threads.
 ///
 /// The first call also takes over MuJoCo's two process-wide handlers, for good: engine errors

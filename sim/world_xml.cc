@@ -159,8 +159,8 @@ void AddSettings(const Scenario& scenario, XMLElement* world) {
   Set(option, "integrator", "Euler");
   // Room for a robot that lies deep in an obstacle; running out of it ends the episode.
   XMLElement* size = Append(world, "size");
-  Set(size, "nconmax", "500");
-  Set(size, "njmax", "2500");
+  Set(size, "nconmax", "200");
+  Set(size, "njmax", "800");
   XMLElement* statistic = Append(world, "statistic");
   Set(statistic, "center", ToText(scenario.X_WB.translation()));
   Set(statistic, "extent", "3");

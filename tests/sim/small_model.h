@@ -1,0 +1,49 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <random>
+#include <string>
+
+#include "core/pose.h"
+#include "sim/mujoco_model.h"
+
+namespace sidestep {
+
+/// A model from the inside of <worldbody> (and what else belongs to the top), at its first pose.
+struct SmallModel {
+  MujocoModelPtr model;
+  MujocoDataPtr data;
+
+  explicit SmallModel(const std::string& worldbody, const std::string& top = "")
+      : model(LoadMujocoModel("<mujoco><compiler angle='radian'/>" + top + "<worldbody>" +
+                                  worldbody + "</worldbody></mujoco>",
+                              "small model")),
+        data(MakeMujocoData(*model)) {
+    mj_kinematics(model.get(), data.get());
+  }
+
+  /// Puts mocap body `index` somewhere.
+  void Place(int index, const Pose& X_WO) {
+    const Eigen::Quaterniond& R = X_WO.rotation();
+    Eigen::Map<Eigen::Vector3d>(data->mocap_pos + 3 * index) = X_WO.translation();
+    Eigen::Map<Eigen::Vector4d>(data->mocap_quat + 4 * index) << R.w(), R.x(), R.y(), R.z();
+    mj_kinematics(model.get(), data.get());
+  }
+
+  int Geom(const std::string& name) const {
+    return mj_name2id(model.get(), mjOBJ_GEOM, name.c_str());
+  }
+};
+
+/// Any orientation, and a position within `reach_m` of the origin along each axis.
+inline Pose RandomPose(double reach_m, std::mt19937* generator) {
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform(-reach_m, reach_m);
+  Eigen::Vector4d q;
+  for (double& x : q) x = normal(*generator);
+  Eigen::Vector3d p;
+  for (double& x : p) x = uniform(*generator);
+  return Pose(Eigen::Quaterniond(q), p);
+}
+
+}  // namespace sidestep

@@ -1,0 +1,223 @@
+#include "sim/world_xml.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "core/input_error.h"
+#include "sim/mujoco_pose.h"
+#include "sim/world_geoms.h"
+#include "tests/sim/small_model.h"
+#include "tests/sim/two_link.h"
+
+namespace sidestep {
+namespace {
+
+using Eigen::Vector3d;
+
+struct Built {
+  MujocoModelPtr model;
+  MujocoDataPtr data;
+  explicit Built(const Scenario& scenario)
+      : model(LoadMujocoModel(BuildWorldXml(scenario, {"foot", "turret"}, kTestModels), "world")),
+        data(MakeMujocoData(*model)) {
+    mj_forward(model.get(), data.get());
+  }
+  int Id(mjtObj type, const std::string& name) const {
+    return mj_name2id(model.get(), type, name.c_str());
+  }
+  Pose BodyPose(const std::string& name) const {
+    const int body = Id(mjOBJ_BODY, name);
+    const mjtNum* q = data->xquat + 4 * body;
+    return Pose(Eigen::Quaterniond(q[0], q[1], q[2], q[3]),
+                Eigen::Map<const Vector3d>(data->xpos + 3 * body));
+  }
+};
+
+void ExpectSamePose(const Pose& a, const Pose& b) {
+  const Pose difference = a.Inverse() * b;
+  EXPECT_LT(difference.translation().norm(), 1e-12);
+  EXPECT_LT(difference.rotation().vec().norm(), 1e-12);
+}
+
+Scenario FullScenario() {
+  Scenario scenario = TwoLinkScenario();
+  scenario.X_WB = Pose::FromRollPitchYaw({0.1, -0.2, 0.3}, {0.4, 0.5, 0.6});
+  scenario.static_boxes = {
+      {"table", Pose::FromRollPitchYaw({0, 0, 0.5}, {1, 2, 0.2}), {0.8, 1.2, 0.4}},
+      {"wall", Pose::Translation({0, -2, 1}), {3, 0.1, 2}}};
+  scenario.mount = "table";
+  scenario.floor_m = -0.3;
+  scenario.moving_obstacles = {
+      Passing("cart", Box{{0.48, 0.55, 1.2}}, {0.4, 2, 0.6}, {0, -1, 0}, 1.4),
+      Passing("bead", Sphere{0.15}, {-1, 0, 1}, {1, 0, 0}, 0.5),
+      Passing("pill", Capsule{0.1, 0.4}, {-1, 1, 1}, {1, 0, 0}, 0.5),
+      Passing("drum", Cylinder{0.2, 0.6}, {-1, -1, 1}, {1, 0, 0}, 0.5),
+      Passing("egg", Ellipsoid{{0.1, 0.2, 0.3}}, {-1, 0, 2}, {1, 0, 0}, 0.5)};
+  scenario.moving_obstacles[0].appearance = "crate";
+  scenario.moving_obstacles[3].rpy_rad = {0.3, 0.2, 0.1};
+  return scenario;
+}
+
+TEST(WorldXml, PutsEverythingWhereTheScenarioHasIt) {
+  const Scenario scenario = FullScenario();
+  const Built world(scenario);
+  ExpectSamePose(world.BodyPose(kRobotBody), scenario.X_WB);
+  ExpectSamePose(world.BodyPose("turret"), scenario.X_WB * Pose::Translation({0, 0, 0.3}));
+  for (const StaticBox& box : scenario.static_boxes) {
+    ExpectSamePose(world.BodyPose(box.name), box.X_WO);
+    const int geom = world.Id(mjOBJ_GEOM, box.name);
+    EXPECT_EQ(world.model->geom_type[geom], mjGEOM_BOX);
+    EXPECT_LT((2 * Eigen::Map<Vector3d>(world.model->geom_size + 3 * geom) - box.size_m).norm(),
+              1e-12);
+  }
+  for (const MovingObstacle& obstacle : scenario.moving_obstacles) {
+    ExpectSamePose(world.BodyPose(obstacle.name), PoseAt(obstacle, EpisodeTime(0)));
+    EXPECT_GE(world.model->body_mocapid[world.Id(mjOBJ_BODY, obstacle.name)], 0);
+    EXPECT_GE(world.Id(mjOBJ_GEOM, obstacle.name), 0);
+  }
+  EXPECT_EQ(world.data->geom_xpos[3 * world.Id(mjOBJ_GEOM, kFloorGeom) + 2], -0.3);
+  EXPECT_EQ(world.model->opt.timestep, 0.001);
+}
+
+TEST(WorldXml, MakesSolidsOfTheShapesOfTheScenario) {
+  const Scenario scenario = FullScenario();
+  const Built world(scenario);
+  const int types[] = {mjGEOM_BOX, mjGEOM_SPHERE, mjGEOM_CAPSULE, mjGEOM_CYLINDER,
+                       mjGEOM_ELLIPSOID};
+  for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
+    const MovingObstacle& obstacle = scenario.moving_obstacles[i];
+    const int geom = world.Id(mjOBJ_GEOM, obstacle.name);
+    EXPECT_EQ(world.model->geom_type[geom], types[i]);
+    // MuJoCo's ray from far along each axis meets the surface where core/shape.h has it.
+    const Pose X_WO = PoseAt(obstacle, EpisodeTime(0));
+    for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, 0, 1)}) {
+      const Vector3d from = X_WO * (2 * axis), along = X_WO.Rotate(-axis);
+      const double length =
+          mju_rayGeom(world.data->geom_xpos + 3 * geom, world.data->geom_xmat + 9 * geom,
+                      world.model->geom_size + 3 * geom, from.data(), along.data(), types[i]);
+      EXPECT_NEAR(length, 2 - HalfExtents(obstacle.shape).dot(axis), 1e-9) << obstacle.name;
+    }
+  }
+}
+
+TEST(WorldXml, KeepsTheRobotsDefaultsToTheRobot) {
+  const Built world(FullScenario());
+  EXPECT_EQ(world.model->geom_rgba[4 * world.Id(mjOBJ_GEOM, "floor")], 0.5f);  // MuJoCo's grey
+  const int bar = world.Id(mjOBJ_GEOM, "bar");
+  EXPECT_EQ(world.model->geom_rgba[4 * bar], 0.8f);
+  EXPECT_EQ(world.model->dof_damping[0], 0.5);
+  EXPECT_EQ(world.model->actuator_forcerange[1], 40);
+  EXPECT_EQ(world.model->actuator_forcelimited[0], 1);
+}
+
+TEST(WorldXml, DrawsAnAppearanceInsideItsInvisibleShape) {
+  const Built world(FullScenario());
+  const mjModel& m = *world.model;
+  const int contact_geom = world.Id(mjOBJ_GEOM, "cart");
+  EXPECT_EQ(m.geom_group[contact_geom], 4);
+  EXPECT_EQ(m.geom_contype[contact_geom], 1);
+
+  std::vector<int> pictures;
+  for (int i = 0; i < m.ngeom; ++i) {
+    if (m.body_rootid[m.geom_bodyid[i]] != world.Id(mjOBJ_BODY, "cart") || i == contact_geom) {
+      continue;
+    }
+    pictures.push_back(i);
+    EXPECT_EQ(m.geom_group[i], 2);
+    EXPECT_EQ(m.geom_contype[i], 0);
+    EXPECT_EQ(m.geom_conaffinity[i], 0);
+  }
+  ASSERT_THAT(pictures, testing::SizeIs(2));  // the crate's third geom is not drawn
+  // It stands on the underside of the shape (z = 0) and looks along -y.
+  const Vector3d p_WLid = GeomPosition(*world.data, pictures[1]);
+  EXPECT_LT((p_WLid - Vector3d(0.4, 2 - 0.05, 0.2)).norm(), 1e-9);
+  EXPECT_EQ(m.geom_rgba[4 * pictures[0]], 0.9f);  // of its material
+  EXPECT_EQ(m.geom_rgba[4 * pictures[1] + 2], 1.0f);
+
+  const WorldGeoms geoms = FindWorldGeoms(m);
+  EXPECT_THAT(geoms.moving, testing::SizeIs(5));
+  EXPECT_THAT(geoms.fixed, testing::SizeIs(2));
+  EXPECT_THAT(geoms.floor, testing::SizeIs(1));
+  EXPECT_THAT(geoms.robot, testing::SizeIs(4));
+}
+
+TEST(WorldXml, ExcludesContactsOfTheMountLinksWithTheMountOnly) {
+  const Built world(FullScenario());
+  const auto excluded = [&](const char* a, const char* b) {
+    return IsExcluded(*world.model, world.Id(mjOBJ_BODY, a), world.Id(mjOBJ_BODY, b));
+  };
+  EXPECT_TRUE(excluded("foot", "table"));
+  EXPECT_TRUE(excluded("table", "turret"));
+  EXPECT_FALSE(excluded("bar", "table"));
+  EXPECT_FALSE(excluded("foot", "wall"));
+}
+
+TEST(WorldXml, AimsItsCamerasAtTheRobotsWorkspace) {
+  const Scenario scenario = FullScenario();
+  const Built world(scenario);
+  const Vector3d target = scenario.X_WB * Vector3d(0.35, 0, 0.2);
+  for (const char* name : {kOverviewCamera, kTopCamera}) {
+    const int camera = world.Id(mjOBJ_CAMERA, name);
+    ASSERT_GE(camera, 0);
+    const Vector3d p_WEye = Eigen::Map<Vector3d>(world.data->cam_xpos + 3 * camera);
+    const Vector3d back(world.data->cam_xmat[9 * camera + 2], world.data->cam_xmat[9 * camera + 5],
+                        world.data->cam_xmat[9 * camera + 8]);
+    EXPECT_LT((p_WEye - target).normalized().cross(back).norm(), 1e-9) << name;
+    EXPECT_GT((p_WEye - target).dot(back), 0) << name;
+  }
+}
+
+// Files in a folder of models of their own.
+class BrokenModel : public testing::Test {
+ protected:
+  void SetUp() override {
+    directory_ = testing::TempDir() + "/broken_models";
+    std::filesystem::create_directories(directory_ + "/arm");
+  }
+  void TearDown() override { std::filesystem::remove_all(directory_); }
+
+  std::string MessageFor(const std::string& text) const {
+    std::ofstream(directory_ + "/arm/arm.xml") << text;
+    Scenario scenario = TwoLinkScenario();
+    scenario.robot = "arm";
+    try {
+      BuildWorldXml(scenario, {}, directory_);
+    } catch (const InputError& error) {
+      return std::string(error.what()).substr(directory_.size());
+    }
+    return "was accepted";
+  }
+
+  std::string directory_;
+};
+
+TEST_F(BrokenModel, IsRefusedWithItsLine) {
+  EXPECT_EQ(MessageFor("<mujoco>\n<worldbody>\n</mujoco>"),
+            "/arm/arm.xml:2: XML_ERROR_MISMATCHED_ELEMENT");
+  EXPECT_EQ(MessageFor("<robot/>"), "/arm/arm.xml:1: must be an MJCF file, whose root is <mujoco>");
+  EXPECT_EQ(
+      MessageFor("<mujoco>\n<asset>\n<mesh file='a.stl'/></asset></mujoco>"),
+      "/arm/arm.xml:3: file: a model must not refer to other files; build it from primitives");
+  EXPECT_EQ(
+      MessageFor("<mujoco>\n<include file='other.xml'/></mujoco>"),
+      "/arm/arm.xml:2: include: a model must not refer to other files; build it from primitives");
+}
+
+TEST(WorldXml, SaysWhichModelIsMissing) {
+  Scenario scenario = FullScenario();
+  scenario.moving_obstacles[0].appearance = "ghost";
+  scenario.lines["moving_obstacles[0].appearance"] = 17;
+  EXPECT_THAT([&] { BuildWorldXml(scenario, {}, kTestModels); },
+              testing::ThrowsMessage<InputError>(
+                  testing::StartsWith("two_link.yaml:17: moving_obstacles[0].appearance: ")));
+  scenario = FullScenario();
+  scenario.robot = "ghost";
+  EXPECT_THAT([&] { BuildWorldXml(scenario, {}, kTestModels); },
+              testing::ThrowsMessage<InputError>(testing::HasSubstr("ghost.xml")));
+}
+
+}  // namespace
+}  // namespace sidestep
