@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include "planner/guarded_spheres.h"
 
 namespace sidestep {
 namespace {
@@ -10,20 +13,11 @@ constexpr double kSampleStep_s = 0.02;
 
 }  // namespace
 
-std::vector<int> GuardedSpheres(const RobotModel& robot) {
-  const std::vector<int>& mount = robot.mount_spheres();
-  std::vector<int> guarded;
-  for (int s = 0; s < robot.num_spheres(); ++s) {
-    if (!std::binary_search(mount.begin(), mount.end(), s)) guarded.push_back(s);
-  }
-  return guarded;
-}
-
 Clearance MeasureClearance(const RobotModel& robot, const DistanceField& field,
-                           const Trajectory& trajectory, EpisodeTime start, EpisodeTime from) {
+                           const Trajectory& trajectory, EpisodeTime start, EpisodeTime from,
+                           EpisodeTime to) {
   const std::vector<int> spheres = GuardedSpheres(robot);
-  const EpisodeTime end = start + HorizonOffset(trajectory.t_s(trajectory.num_states() - 1));
-  const double duration_s = std::max(0.0, (end - from).seconds());
+  const double duration_s = std::max(0.0, (to - from).seconds());
   const int num_steps = static_cast<int>(std::ceil(duration_s / kSampleStep_s));
   Eigen::Matrix3Xd p_WS(3, spheres.size());
   DistanceSamples samples;
@@ -36,11 +30,8 @@ Clearance MeasureClearance(const RobotModel& robot, const DistanceField& field,
     field.SampleMany(p_WS, t, samples);
     clearance.samples_outside_grid += samples.num_outside;
     for (std::size_t s = 0; s < spheres.size(); ++s) {
-      const double distance_m = samples.distance_m(s) - robot.sphere_radii_m()(spheres[s]);
-      if (distance_m < clearance.least_m) {
-        clearance.least_m = distance_m;
-        clearance.t = t;
-      }
+      clearance.least_m =
+          std::min(clearance.least_m, samples.distance_m(s) - robot.sphere_radii_m()(spheres[s]));
     }
   }
   return clearance;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <limits>
-#include <vector>
 
 #include "core/time.h"
 #include "core/trajectory.h"
@@ -10,22 +9,19 @@
 
 namespace sidestep {
 
-/// The spheres that obstacle costs and checks look at, all but mount spheres: indices, ascending.
-std::vector<int> GuardedSpheres(const RobotModel& robot);
-
-/// How close a motion comes to what a field holds.
+/// How close a motion comes to what a field holds: the judge of plans, because a small cost does
+/// not mean free, nor a large one collision.
 struct Clearance {
-  /// Least field distance - sphere radius [m]; no more than the field's clamp - smallest radius.
+  /// Least field distance - sphere radius [m], mount spheres left out. At most the field's clamp
+  /// less the smallest radius.
   double least_m = std::numeric_limits<double>::infinity();
-  EpisodeTime t;                 ///< when
-  int samples_outside_grid = 0;  ///< sphere positions outside the mapped box, not judged
+  int samples_outside_grid = 0;  ///< sphere positions outside the mapped box: not judged
 };
 
-/// Samples the cubics of `trajectory`, which began at `start`, from `from` to its end, every 0.02 s
-/// and at the end: the judge of plans, because a small cost does not mean free nor a large one
-/// collision. Before its start and after its end the motion rests; `from` past the end judges the
-/// last state at `from`.
+/// Samples the motion along `trajectory`, which began at `start`, every 0.02 s from `from` to `to`,
+/// and at `to`. Before its first and after its last state it rests.
 Clearance MeasureClearance(const RobotModel& robot, const DistanceField& field,
-                           const Trajectory& trajectory, EpisodeTime start, EpisodeTime from);
+                           const Trajectory& trajectory, EpisodeTime start, EpisodeTime from,
+                           EpisodeTime to);
 
 }  // namespace sidestep

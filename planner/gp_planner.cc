@@ -3,6 +3,7 @@
 #include <ceres/solver.h>
 
 #include <utility>
+#include <vector>
 
 #include "planner/first_guess.h"
 #include "planner/gp_problem.h"
@@ -40,17 +41,6 @@ SolveOutcome SolveByLevenbergMarquardt(ceres::Problem& problem, int max_iteratio
           summary.termination_type == ceres::CONVERGENCE};
 }
 
-// Whether `a` is the better plan: free within limits before free before not free; then the wider.
-bool IsBetter(const PlanResult& a, const PlanResult& b) {
-  const auto rank = [](const PlanResult& plan) {
-    return plan.min_clearance_m <= 0 ? 0 : plan.limit_use > 1 ? 1 : 2;
-  };
-  if (rank(a) != rank(b)) return rank(a) > rank(b);
-  return a.min_clearance_m > b.min_clearance_m;
-}
-
-bool IsGood(const PlanResult& plan) { return plan.min_clearance_m > 0 && plan.limit_use <= 1; }
-
 }  // namespace
 
 GpPlanner::GpPlanner(const RobotModel& robot, const PlannerSettings& settings)
@@ -80,21 +70,39 @@ PlanResult GpPlanner::Solve(const PlanRequest& request, const Trajectory& guess,
   const SolveOutcome outcome = SolveByLevenbergMarquardt(
       problem.problem(), settings_.max_iterations, settings_.function_tolerance);
 
-  PlanResult result = Judge(request, problem.GetTrajectory(), outcome.converged);
+  PlanResult result = MakeResult(request, problem.GetTrajectory(), outcome.converged);
   result.iterations = first_stage.iterations + outcome.iterations;
   result.cost = problem.ComputeCost();
   return result;
 }
 
+bool GpPlanner::IsWithinLimits(const PlanResult& plan) const {
+  return (!settings_.position_limits || plan.limit_use.position <= 1) &&
+         (!settings_.velocity_limits || plan.limit_use.velocity <= 1) &&
+         (!settings_.acceleration_limits || plan.limit_use.acceleration <= 1);
+}
+
+bool GpPlanner::IsBetter(const PlanResult& a, const PlanResult& b) const {
+  const auto rank = [this](const PlanResult& plan) {
+    return plan.min_clearance_m <= 0 ? 0 : IsWithinLimits(plan) ? 2 : 1;
+  };
+  if (rank(a) != rank(b)) return rank(a) > rank(b);
+  return a.min_clearance_m > b.min_clearance_m;
+}
+
 PlanResult GpPlanner::DoPlan(const PlanRequest& request) const {
-  PlanResult best = request.initial ? Solve(request, MakeWarmStart(request), /*warm=*/true)
-                                    : Solve(request, MakeDirectMotion(request, Timing::kWholeTime),
-                                            /*warm=*/false);
+  std::vector<Timing> seeds = {Timing::kWholeTime, Timing::kLeaveLate, Timing::kArriveEarly};
+  PlanResult best;
+  if (request.initial) {
+    best = Solve(request, MakeWarmStart(request), /*warm=*/true);
+  } else {
+    best = Solve(request, MakeDirectMotion(request, seeds.front()), /*warm=*/false);
+    seeds.erase(seeds.begin());
+  }
   int iterations = best.iterations;
-  for (const Timing timing : {Timing::kWholeTime, Timing::kLeaveLate, Timing::kArriveEarly}) {
-    if (IsGood(best)) break;
-    if (timing == Timing::kWholeTime && !request.initial) continue;  // has been tried
-    PlanResult other = Solve(request, MakeDirectMotion(request, timing), /*warm=*/false);
+  for (const Timing seed : seeds) {
+    if (best.min_clearance_m > 0 && IsWithinLimits(best)) break;
+    PlanResult other = Solve(request, MakeDirectMotion(request, seed), /*warm=*/false);
     iterations += other.iterations;
     if (IsBetter(other, best)) best = std::move(other);
   }

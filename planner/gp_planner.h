@@ -24,6 +24,9 @@ class GpPlanner final : public Planner {
  private:
   PlanResult DoPlan(const PlanRequest& request) const override;
   PlanResult Solve(const PlanRequest& request, const Trajectory& guess, bool warm) const;
+  bool IsWithinLimits(const PlanResult& plan) const;  // those that count by the settings
+  /// Free within limits comes before free, free before not free; then the wider clearance.
+  bool IsBetter(const PlanResult& a, const PlanResult& b) const;
 
   PlannerSettings settings_;
 };

@@ -14,13 +14,13 @@ double PositionUse(const JointLimits& limits, double q) {
 
 }  // namespace
 
-double MeasureLimitUse(const RobotModel& robot, const Trajectory& trajectory, int first_state) {
-  double use = 0;
+LimitUse MeasureLimitUse(const RobotModel& robot, const Trajectory& trajectory, int first_state) {
+  LimitUse use;
   for (int i = 0; i < robot.num_joints(); ++i) {
     const JointLimits& limits = robot.limits()[i];
     for (int k = first_state; k < trajectory.num_states(); ++k) {
-      use = std::max({use, PositionUse(limits, trajectory.q(i, k)),
-                      std::abs(trajectory.v(i, k)) / limits.v_max});
+      use.position = std::max(use.position, PositionUse(limits, trajectory.q(i, k)));
+      use.velocity = std::max(use.velocity, std::abs(trajectory.v(i, k)) / limits.v_max);
     }
     for (int k = first_state; k + 1 < trajectory.num_states(); ++k) {
       const double dt = trajectory.t_s(k + 1) - trajectory.t_s(k);
@@ -28,10 +28,11 @@ double MeasureLimitUse(const RobotModel& robot, const Trajectory& trajectory, in
       const double v0 = trajectory.v(i, k), v1 = trajectory.v(i, k + 1);
       const double a0 = 6 * dq / (dt * dt) - (4 * v0 + 2 * v1) / dt;
       const double a1 = -6 * dq / (dt * dt) + (2 * v0 + 4 * v1) / dt;
-      use = std::max({use, std::abs(a0) / limits.a_max, std::abs(a1) / limits.a_max});
+      use.acceleration =
+          std::max({use.acceleration, std::abs(a0) / limits.a_max, std::abs(a1) / limits.a_max});
       if (a0 * a1 < 0) {  // The velocity turns inside, where the acceleration crosses zero.
         const double v_turn = v0 + 0.5 * a0 * dt * a0 / (a0 - a1);
-        use = std::max(use, std::abs(v_turn) / limits.v_max);
+        use.velocity = std::max(use.velocity, std::abs(v_turn) / limits.v_max);
       }
     }
   }

@@ -4,7 +4,6 @@
 #include <stdexcept>
 
 #include "planner/clearance.h"
-#include "planner/limit_use.h"
 
 namespace sidestep {
 namespace {
@@ -70,11 +69,12 @@ PlanResult Planner::Plan(const PlanRequest& request) const {
   return DoPlan(request);
 }
 
-PlanResult Planner::Judge(const PlanRequest& request, const Trajectory& trajectory,
-                          bool converged) const {
-  const double free_from_s = trajectory.t_s(request.num_fixed - 1);
-  const Clearance clearance = MeasureClearance(robot_, *request.field, trajectory, request.start,
-                                               request.start + HorizonOffset(free_from_s));
+PlanResult Planner::MakeResult(const PlanRequest& request, const Trajectory& trajectory,
+                               bool converged) const {
+  const auto at = [&](int k) { return request.start + HorizonOffset(trajectory.t_s(k)); };
+  const Clearance clearance =
+      MeasureClearance(robot_, *request.field, trajectory, request.start, at(request.num_fixed - 1),
+                       at(request.num_states - 1));
   PlanResult result;
   result.trajectory = trajectory;
   result.min_clearance_m = clearance.least_m;

@@ -6,6 +6,7 @@
 
 #include "core/time.h"
 #include "core/trajectory.h"
+#include "planner/limit_use.h"
 #include "robot/robot_model.h"
 #include "sdf/distance_field.h"
 
@@ -50,9 +51,7 @@ struct PlanResult {
   PlanCost cost;
   double min_clearance_m = 0;    ///< least distance - radius along the free part, in the field
   int samples_outside_grid = 0;  ///< sphere positions of that check outside the mapped box
-  /// Largest share of the robot's position, velocity or acceleration limits that the free part
-  /// uses; above 1 it exceeds one.
-  double limit_use = 0;
+  LimitUse limit_use;            ///< of the free part
 };
 
 /// Request in, result out; no hidden state: equal requests give equal bits.
@@ -67,9 +66,9 @@ class Planner {
  protected:
   explicit Planner(const RobotModel& robot) : robot_(robot) {}
 
-  /// Judges a motion by its clearance and use of limits: fills all of the result but its cost and
-  /// iterations.
-  PlanResult Judge(const PlanRequest& request, const Trajectory& trajectory, bool converged) const;
+  /// The result for a trajectory on the request's grid, judged; without cost and iterations.
+  PlanResult MakeResult(const PlanRequest& request, const Trajectory& trajectory,
+                        bool converged) const;
 
  private:
   virtual PlanResult DoPlan(const PlanRequest& request) const = 0;  // `request` has been checked.

@@ -1,5 +1,7 @@
 #include "planner/registry.h"
 
+#include <ceres/version.h>
+
 #include <array>
 #include <stdexcept>
 
@@ -43,5 +45,7 @@ std::unique_ptr<Planner> MakePlanner(const std::string& name, const RobotModel& 
   }
   throw std::invalid_argument("unknown planner '" + name + "'; there are: " + known);
 }
+
+std::string CeresVersion() { return CERES_VERSION_STRING; }
 
 }  // namespace sidestep

@@ -10,6 +10,9 @@
 
 namespace sidestep {
 
+/// Version of the solver library, e.g. "2.1.0".
+std::string CeresVersion();
+
 /// The names of all planners.
 std::vector<std::string> PlannerNames();
 

@@ -13,12 +13,12 @@
 namespace sidestep {
 
 struct ReplannerOptions {
-  double horizon_s = 3;  ///< T
+  double horizon_s = 3;  ///< T, a multiple of step_s
   double step_s = 0.1;   ///< between support states
   Eigen::VectorXd q_goal;
 };
 
-/// A plan, and when it begins (its support state 0) and takes effect.
+/// A plan, and when it begins: its state k is at start + t_s(k).
 struct TimedPlan {
   Trajectory trajectory;
   EpisodeTime start;
@@ -27,28 +27,55 @@ struct TimedPlan {
 /// Algorithm 1 of Finean, Merkt & Havoutis (ICAPS 2021): observe, predict, re-optimise, splice.
 /// Knows neither a simulator nor hardware: the loop tells it the time, the state and the latency.
 ///
-/// Support states stand on a fixed time grid. In each cycle, every state up to the moment when the
-/// new plan takes effect is held at the running plan's values, so that the motion is continuous in
-/// position and velocity across the splice, whatever the latency. Each cycle starts from the plan
-/// that runs (warm start). When the horizon has run out, it begins anew from the present state.
+/// Support states stand on a fixed time grid. In each cycle, every state up to the first at or
+/// after the moment when the new plan takes effect is held at the running plan's values, so the two
+/// agree until then, and the motion is continuous in position and velocity whatever the latency.
+/// Each cycle starts from the plan that runs (warm start). A robot without a plan rests until its
+/// first one takes effect.
+///
+/// With fewer than 3 states left to choose, the running plan is kept, unless it does not lead to
+/// the goal or is predicted to hit something: then a new horizon begins at the moment of effect,
+/// from the state that the robot will have there. Once at rest at the goal, the robot looks one
+/// horizon ahead and steps aside likewise. A robot found further than 0.1 rad from its plan gets a
+/// new horizon from where it is.
+///
+/// A plan is taken if it is predicted to be free, or else if it keeps more distance than going on
+/// with what runs would: waiting is a motion too.
 class Replanner {
  public:
+  /// `planner` and `world` are borrowed. @throws std::invalid_argument for options out of range.
   Replanner(const Planner& planner, WorldModel& world, const ReplannerOptions& options);
 
   struct Cycle {
-    std::optional<TimedPlan> plan;  ///< to submit, if one was found
+    /// To be followed from record.t_effect on, if one was found. It agrees with what runs until
+    /// then, or it begins then.
+    std::optional<TimedPlan> plan;
+    /// Its status is that of the planner, or "kept" if nothing was planned; its plan is the one
+    /// found or kept, with that one's clearance from the moment of effect on.
     CycleRecord record;
-    double predict_s = 0;  ///< wall clock, for the report only
+    double predict_s = 0;  ///< CPU seconds of this thread, for the report only
     double optimise_s = 0;
   };
 
-  /// One cycle at `now`, whose plan takes effect at now + latency. `state` is the measured state.
+  /// One cycle at `now`, whose plan takes effect at now + latency, but never before a running plan
+  /// begins. `state` is the measured state. The world must have seen a scan.
   Cycle Run(EpisodeTime now, const JointState& state, HorizonOffset latency);
 
  private:
+  /// What the robot does if no new plan comes: its running plan, or rest.
+  TimedPlan WithoutNewPlan(EpisodeTime now, const JointState& state) const;
+  /// The request of this cycle; none if the running plan is to be kept.
+  std::optional<PlanRequest> MakeRequest(EpisodeTime now, const JointState& state,
+                                         EpisodeTime t_effect, const DistanceField& field) const;
+  /// A whole horizon from `start`.
+  PlanRequest NewHorizon(EpisodeTime start, const Eigen::VectorXd& q, const Eigen::VectorXd& v,
+                         const DistanceField& field) const;
+  bool IsOffPlan(EpisodeTime now, const JointState& state) const;
+
   const Planner& planner_;
   WorldModel& world_;
   ReplannerOptions options_;
+  int num_states_;
   std::optional<TimedPlan> running_;
 };
 

@@ -5,7 +5,7 @@
 namespace sidestep {
 
 PlanResult StraightLinePlanner::DoPlan(const PlanRequest& request) const {
-  return Judge(request, MakeDirectMotion(request, Timing::kWholeTime), /*converged=*/true);
+  return MakeResult(request, MakeDirectMotion(request, Timing::kWholeTime), /*converged=*/true);
 }
 
 }  // namespace sidestep

@@ -1,6 +1,6 @@
 #include "planner/costs/obstacle_hinge.h"
 
-#include "planner/clearance.h"
+#include "planner/guarded_spheres.h"
 
 namespace sidestep {
 

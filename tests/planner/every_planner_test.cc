@@ -1,0 +1,176 @@
+// What every registered planner promises.
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "planner/registry.h"
+#include "tests/support/ball_field.h"
+#include "tests/support/planar_arm.h"
+
+namespace sidestep {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+class EveryPlanner : public ::testing::TestWithParam<std::string> {
+ protected:
+  // Sweeps through where a ball passes by.
+  PlanRequest Request() const {
+    PlanRequest request;
+    request.field = &field_;
+    request.start = EpisodeTime(0.7);
+    request.step_s = 0.1;
+    request.num_states = 21;
+    request.q_start = Eigen::Vector2d(-1.1, 0.3);
+    request.v_start = Eigen::Vector2d(0.2, -0.1);
+    request.q_goal = Eigen::Vector2d(1.2, -0.2);
+    return request;
+  }
+
+  // The same with its first 8 states given, which no planner would choose.
+  PlanRequest RequestWithFixedStates() const {
+    PlanRequest request = Request();
+    request.num_fixed = 8;
+    request.initial = Trajectory{Eigen::VectorXd::LinSpaced(21, 0, 20) * 0.1,
+                                 Eigen::MatrixXd(2, 21), Eigen::MatrixXd(2, 21)};
+    for (int k = 0; k < 21; ++k) {
+      request.initial->q.col(k) = Eigen::Vector2d(-1.1 + 0.1 * k, 0.3 + 0.01 * k * k);
+      request.initial->v.col(k) = Eigen::Vector2d(0.2 + 0.03 * k, -0.1 - 0.01 * k);
+    }
+    return request;
+  }
+
+  PlanResult Plan(const PlanRequest& request) const {
+    return MakePlanner(GetParam(), arm_, {})->Plan(request);
+  }
+
+  const RobotModel arm_ = MakePlanarArm();
+  const BallField field_{{0.9, 0.4, 0}, {0, -0.3, 0}, 0.15};
+};
+
+TEST_P(EveryPlanner, AnswersOnTheRequestsGridWithFiniteNumbers) {
+  const PlanResult result = Plan(Request());
+  ASSERT_NO_THROW(CheckTrajectory(result.trajectory));
+  EXPECT_EQ(result.trajectory.num_joints(), 2);
+  ASSERT_EQ(result.trajectory.num_states(), 21);
+  for (int k = 0; k < 21; ++k) EXPECT_NEAR(result.trajectory.t_s(k), 0.1 * k, 1e-12);
+  EXPECT_TRUE(std::isfinite(result.cost.total()));
+  EXPECT_TRUE(std::isfinite(result.min_clearance_m));
+}
+
+TEST_P(EveryPlanner, StartsWhereItIsToldToTheBitAndEndsAtTheGoalAtRest) {
+  const PlanRequest request = Request();
+  const PlanResult result = Plan(request);
+  EXPECT_EQ(result.trajectory.q.col(0), request.q_start);
+  EXPECT_EQ(result.trajectory.v.col(0), request.v_start);
+  EXPECT_LT((result.trajectory.q.col(20) - request.q_goal).cwiseAbs().maxCoeff(), 1e-3);
+  EXPECT_LT(result.trajectory.v.col(20).cwiseAbs().maxCoeff(), 1e-3);
+}
+
+TEST_P(EveryPlanner, KeepsFixedStatesToTheBit) {
+  const PlanRequest request = RequestWithFixedStates();
+  const PlanResult result = Plan(request);
+  EXPECT_EQ(result.trajectory.q.leftCols(8), request.initial->q.leftCols(8));
+  EXPECT_EQ(result.trajectory.v.leftCols(8), request.initial->v.leftCols(8));
+  EXPECT_NE(result.trajectory.q.col(8), request.initial->q.col(8)) << "state 8 is free";
+}
+
+TEST_P(EveryPlanner, RestsThroughFixedStatesWithoutAGuess) {
+  PlanRequest request = Request();
+  request.v_start.setZero();
+  request.num_fixed = 4;
+  const PlanResult result = Plan(request);
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_EQ(result.trajectory.q.col(k), request.q_start);
+    EXPECT_EQ(result.trajectory.v.col(k), Eigen::Vector2d::Zero());
+  }
+}
+
+TEST_P(EveryPlanner, RepeatsItselfBitForBit) {
+  for (const PlanRequest& request : {Request(), RequestWithFixedStates()}) {
+    const PlanResult first = Plan(request), second = Plan(request);
+    EXPECT_EQ(first.trajectory.q, second.trajectory.q);
+    EXPECT_EQ(first.trajectory.v, second.trajectory.v);
+    EXPECT_EQ(first.iterations, second.iterations);
+    EXPECT_EQ(first.cost.total(), second.cost.total());
+    EXPECT_EQ(first.min_clearance_m, second.min_clearance_m);
+  }
+}
+
+TEST_P(EveryPlanner, SaysSoWhenThePlanCollides) {
+  PlanRequest request = Request();
+  // Nothing can be done about a ball that sits at the goal.
+  const Eigen::Vector3d p_WTip =
+      arm_.ComputeSphereCenters(request.q_goal, /*with_jacobian=*/false).p_WS.col(5);
+  const BallField at_goal(p_WTip, {0, 0, 0}, 0.1);
+  request.field = &at_goal;
+  const PlanResult result = Plan(request);
+  EXPECT_EQ(result.status, PlanStatus::kInCollision);
+  EXPECT_LT(result.min_clearance_m, 0);
+}
+
+TEST_P(EveryPlanner, RefusesSettingsOutOfRange) {
+  const std::vector<std::function<void(PlannerSettings&)>> spoil = {
+      [](PlannerSettings& s) { s.epsilon_m = -0.1; },
+      [](PlannerSettings& s) { s.sigma_obs = 0; },
+      [](PlannerSettings& s) { s.num_interpolated = -1; },
+      [](PlannerSettings& s) { s.qc = kNaN; },
+      [](PlannerSettings& s) { s.sigma_goal = 0; },
+      [](PlannerSettings& s) { s.limit_scale = 1.1; },
+      [](PlannerSettings& s) { s.max_iterations = 0; },
+      [](PlannerSettings& s) { s.function_tolerance = -1; },
+  };
+  for (std::size_t i = 0; i < spoil.size(); ++i) {
+    PlannerSettings settings;
+    spoil[i](settings);
+    EXPECT_THROW(MakePlanner(GetParam(), arm_, settings), std::invalid_argument) << "setting " << i;
+  }
+}
+
+TEST_P(EveryPlanner, RefusesRequestsThatMeanNothing) {
+  const std::vector<std::function<void(PlanRequest&)>> spoil = {
+      [](PlanRequest& r) { r.field = nullptr; },
+      [](PlanRequest& r) { r.start = EpisodeTime(kNaN); },
+      [](PlanRequest& r) { r.step_s = 0; },
+      [](PlanRequest& r) { r.step_s = kNaN; },
+      [](PlanRequest& r) { r.num_states = 1; },
+      [](PlanRequest& r) { r.q_start = Eigen::VectorXd::Zero(3); },
+      [](PlanRequest& r) { r.q_start(1) = kNaN; },
+      [](PlanRequest& r) { r.v_start.resize(0); },
+      [](PlanRequest& r) { r.q_goal(0) = std::numeric_limits<double>::infinity(); },
+      [](PlanRequest& r) { r.num_fixed = 0; },
+      [](PlanRequest& r) { r.num_fixed = 21; },
+      [](PlanRequest& r) { r.v_start(0) += 1e-9; },  // is not where the fixed states begin
+      [](PlanRequest& r) { r.initial.reset(); },     // fixed states at rest, but it moves
+      [](PlanRequest& r) { r.initial->q(1, 15) = kNaN; },
+      [](PlanRequest& r) { r.initial->t_s *= 1.01; },
+      [](PlanRequest& r) { r.num_states = 20; },
+      [](PlanRequest& r) { r.initial->q = Eigen::MatrixXd::Zero(3, 21); },
+  };
+  const auto planner = MakePlanner(GetParam(), arm_, {});
+  ASSERT_NO_THROW(planner->Plan(RequestWithFixedStates()));
+  for (std::size_t i = 0; i < spoil.size(); ++i) {
+    PlanRequest request = RequestWithFixedStates();
+    spoil[i](request);
+    EXPECT_THROW(planner->Plan(request), std::invalid_argument) << "request " << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Registered, EveryPlanner, ::testing::ValuesIn(PlannerNames()),
+                         [](const auto& test) { return test.param; });
+
+TEST(PlannerRegistry, NamesThePlannersThereAreWhenAskedForAnother) {
+  try {
+    MakePlanner("chomp", MakePlanarArm(), {});
+    FAIL() << "was accepted";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), "unknown planner 'chomp'; there are: gpmp, straight_line");
+  }
+}
+
+}  // namespace
+}  // namespace sidestep

@@ -1,0 +1,110 @@
+// First guesses, and what motions are judged by: clearance and use of limits.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "planner/clearance.h"
+#include "planner/first_guess.h"
+#include "planner/limit_use.h"
+#include "tests/support/ball_field.h"
+#include "tests/support/planar_arm.h"
+
+namespace sidestep {
+namespace {
+
+PlanRequest Request() {
+  PlanRequest request;
+  request.step_s = 0.1;
+  request.num_states = 31;
+  request.q_start = Eigen::Vector2d(-1, 0.5);
+  request.v_start = Eigen::Vector2d::Zero();
+  request.q_goal = Eigen::Vector2d(1, -0.5);
+  return request;
+}
+
+class DirectMotion : public ::testing::TestWithParam<Timing> {};
+
+TEST_P(DirectMotion, GoesInAStraightLineFromRestToRest) {
+  const PlanRequest request = Request();
+  const Trajectory motion = MakeDirectMotion(request, GetParam());
+  EXPECT_EQ(motion.q.col(0), request.q_start);
+  EXPECT_EQ(motion.q.col(30), request.q_goal);
+  EXPECT_EQ(motion.v.col(30), Eigen::Vector2d::Zero());
+  const Eigen::Vector2d way = request.q_goal - request.q_start;
+  double progress = 0;
+  for (int k = 0; k < 31; ++k) {
+    const Eigen::Vector2d moved = motion.q.col(k) - request.q_start;
+    EXPECT_NEAR(moved(0) * way(1), moved(1) * way(0), 1e-12);
+    EXPECT_GE(moved.dot(way), progress - 1e-12) << "never back";
+    progress = moved.dot(way);
+  }
+}
+
+TEST_P(DirectMotion, GoesOnSmoothlyFromMovingFixedStates) {
+  PlanRequest request = Request();
+  request.initial = MakeDirectMotion(request, Timing::kWholeTime);
+  request.num_fixed = 11;
+  const Trajectory motion = MakeDirectMotion(request, GetParam());
+  EXPECT_EQ(motion.q.leftCols(11), request.initial->q.leftCols(11));
+  EXPECT_EQ(motion.v.leftCols(11), request.initial->v.leftCols(11));
+  EXPECT_EQ(motion.q.col(30), request.q_goal);
+  // No kick: accelerations stay near those of 0.4 to 0.6 of the free 2 s.
+  EXPECT_LT(MeasureLimitUse(MakePlanarArm(), motion, 0).acceleration, 0.6);
+}
+
+INSTANTIATE_TEST_SUITE_P(Timings, DirectMotion,
+                         ::testing::Values(Timing::kWholeTime, Timing::kLeaveLate,
+                                           Timing::kArriveEarly));
+
+TEST(DirectMotion, HasGoneHalfWayAtDifferentTimes) {
+  const auto half_way = [](Timing timing) {
+    return MakeDirectMotion(Request(), timing).q.row(0).cwiseAbs().minCoeff();
+  };
+  EXPECT_NEAR(MakeDirectMotion(Request(), Timing::kWholeTime).q(0, 15), 0, 1e-12);
+  EXPECT_NEAR(MakeDirectMotion(Request(), Timing::kLeaveLate).q(0, 21), 0, 1e-12);
+  EXPECT_NEAR(MakeDirectMotion(Request(), Timing::kArriveEarly).q(0, 9), 0, 1e-12);
+  EXPECT_NEAR(half_way(Timing::kLeaveLate), 0, 1e-12);
+}
+
+TEST(Clearance, IsThatOfTheNearestSphereAtTheNearestTime) {
+  const RobotModel arm = MakePlanarArm();
+  // The arm stays stretched along x; the ball passes 0.3 m beyond its tip at t = 1.
+  const BallField field({1.3, -1, 0}, {0, 1, 0}, 0.1);
+  const Trajectory rest{Eigen::VectorXd::Zero(1), Eigen::MatrixXd::Zero(2, 1),
+                        Eigen::MatrixXd::Zero(2, 1)};
+  const EpisodeTime start(0);
+  const auto least_m = [&](double from_s, double to_s) {
+    return MeasureClearance(arm, field, rest, start, EpisodeTime(from_s), EpisodeTime(to_s))
+        .least_m;
+  };
+  EXPECT_NEAR(least_m(0, 2), 0.3 - 0.1 - 0.04, 1e-9);
+  EXPECT_NEAR(least_m(1.4, 2), std::hypot(0.3, 0.4) - 0.1 - 0.04, 1e-9);
+  EXPECT_NEAR(least_m(0, 0.6), std::hypot(0.3, 0.4) - 0.1 - 0.04, 1e-9);
+  EXPECT_NEAR(least_m(0.2, 0.2), std::hypot(0.3, 0.8) - 0.1 - 0.04, 1e-9);
+}
+
+TEST(Clearance, LeavesMountSpheresOut) {
+  const RobotModel arm = MakePlanarArm();
+  const BallField at_base({0, 0, 0}, {0, 0, 0}, 0.05);
+  const Trajectory rest{Eigen::VectorXd::Zero(1), Eigen::MatrixXd::Zero(2, 1),
+                        Eigen::MatrixXd::Zero(2, 1)};
+  const EpisodeTime t(0);
+  EXPECT_NEAR(MeasureClearance(arm, at_base, rest, t, t, t).least_m, 0.2 - 0.05 - 0.05, 1e-12);
+}
+
+TEST(LimitUse, IsThatOfTheCubicBetweenItsStates) {
+  // From rest to rest over 1.8 rad in 1 s: 2.7 rad/s half way, 10.8 rad/s^2 at the ends. Limits of
+  // the arm: 2.5 rad, 2 rad/s, 10 rad/s^2.
+  const Trajectory motion{Eigen::Vector2d(0, 1),
+                          (Eigen::MatrixXd(2, 2) << -0.2, 1.6, 0, 0).finished(),
+                          Eigen::MatrixXd::Zero(2, 2)};
+  const LimitUse use = MeasureLimitUse(MakePlanarArm(), motion, 0);
+  EXPECT_NEAR(use.velocity, 2.7 / 2, 1e-12);
+  EXPECT_NEAR(use.acceleration, 10.8 / 10, 1e-12);
+  EXPECT_NEAR(use.position, 1.6 / 2.5, 1e-12);
+  EXPECT_EQ(MeasureLimitUse(MakePlanarArm(), motion, 1).acceleration, 0);
+}
+
+}  // namespace
+}  // namespace sidestep
