@@ -16,6 +16,7 @@ void AddRunCommand(CommandLine& line);
 void AddListCommand(CommandLine& line);
 void AddCompareCommand(CommandLine& line);
 void AddRenderCommand(CommandLine& line);
+void AddReproduceCommand(CommandLine& line);
 void AddDoctorCommand(CommandLine& line);
 
 }  // namespace sidestep

@@ -31,6 +31,7 @@ int Run(int argc, char** argv) {
   sidestep::AddRunCommand(line);
   sidestep::AddCompareCommand(line);
   sidestep::AddRenderCommand(line);
+  sidestep::AddReproduceCommand(line);
   sidestep::AddListCommand(line);
   sidestep::AddDoctorCommand(line);
   try {

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sidestep {
+
+/// A table of numbers with a header, as the published results come. Fields may be empty.
+class CsvTable {
+ public:
+  explicit CsvTable(std::vector<std::string> columns) : columns_(std::move(columns)) {}
+
+  /// Numbers only, no quotes; empty lines are skipped.
+  /// @throws InputError FILE:LINE: WHY if it is missing, not text, has no header, a column twice, a
+  /// row of another length, or a field that is neither empty nor a finite number.
+  static CsvTable Read(const std::string& path);
+
+  /// As Read wants it, every number with the fewest digits that give it back exactly.
+  std::string ToText() const;
+
+  const std::vector<std::string>& columns() const { return columns_; }
+  /// The index of a column, if there is one of that name.
+  std::optional<std::size_t> Find(const std::string& column) const;
+
+  std::size_t num_rows() const { return rows_.size(); }
+  std::optional<double> At(std::size_t row, std::size_t column) const { return rows_[row][column]; }
+  /// @throws std::invalid_argument for another number of fields than columns.
+  void AddRow(std::vector<std::optional<double>> row);
+
+ private:
+  std::vector<std::string> columns_;
+  std::vector<std::vector<std::optional<double>>> rows_;
+};
+
+}  // namespace sidestep

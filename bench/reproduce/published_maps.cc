@@ -1,0 +1,51 @@
+#include "bench/reproduce/published_maps.h"
+
+#include "bench/reproduce/parallel.h"
+#include "sdf/grid_field.h"
+
+namespace sidestep {
+
+PublishedMaps::PublishedMaps(const OpenLoopExperiment& experiment, BoxAlignment static_boxes,
+                             DistanceConvention convention, int num_jobs)
+    : experiment_(experiment), static_occupancy_(experiment.grid) {
+  for (const PublishedBox& box : experiment.static_boxes) {
+    Fill(static_occupancy_,
+         PublishedBoxCells(experiment.grid, box.center_m, box.size_m, static_boxes));
+  }
+
+  for (const double speed_m_s : experiment.speeds_m_s) {
+    for (int k = 0; k < experiment.num_states; ++k) fields_[MovingCells(speed_m_s, k)] = nullptr;
+  }
+  std::vector<decltype(fields_)::iterator> entries;
+  for (auto entry = fields_.begin(); entry != fields_.end(); ++entry) entries.push_back(entry);
+  ParallelFor(static_cast<int>(entries.size()), num_jobs, [&](int i) {
+    auto& [cells, field] = *entries[static_cast<std::size_t>(i)];
+    OccupancyGrid occupancy = static_occupancy_;
+    Fill(occupancy, cells);
+    // No clamp that would bite: the published fields have none.
+    field = std::make_unique<GridField>(
+        std::make_shared<const SdfGrid>(ComputeSignedDistance(occupancy, convention)),
+        kNoSurfaceDistance_m);
+  });
+}
+
+CellRange PublishedMaps::MovingCells(double speed_m_s, int step) const {
+  const PublishedBox box = experiment_.MovingBoxAt(speed_m_s, step);
+  return PublishedBoxCells(experiment_.grid, box.center_m, box.size_m, BoxAlignment::kIntended);
+}
+
+OccupancyGrid PublishedMaps::OccupancyAt(double speed_m_s, int step) const {
+  OccupancyGrid occupancy = static_occupancy_;
+  Fill(occupancy, MovingCells(speed_m_s, step));
+  return occupancy;
+}
+
+std::vector<const DistanceField*> PublishedMaps::FieldsAt(double speed_m_s) const {
+  std::vector<const DistanceField*> fields;
+  for (int k = 0; k < experiment_.num_states; ++k) {
+    fields.push_back(fields_.at(MovingCells(speed_m_s, k)).get());
+  }
+  return fields;
+}
+
+}  // namespace sidestep

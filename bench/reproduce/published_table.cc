@@ -1,0 +1,214 @@
+#include "bench/reproduce/published_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <utility>
+
+#include "core/input_error.h"
+
+namespace sidestep {
+namespace {
+
+constexpr const char* kPair = "pair";
+constexpr const char* kSpeed = "speed_m_per_s";
+
+// How the published columns call the kinds of knowledge, in their order; the last is ours.
+struct CaseName {
+  Knowledge knowledge;
+  const char* name;
+};
+constexpr CaseName kCases[] = {{Knowledge::kStatic, "static"},
+                               {Knowledge::kExecuteAndUpdate, "execute_update"},
+                               {Knowledge::kFullKnowledge, "full_knowledge"},
+                               {Knowledge::kPrediction, "prediction"}};
+constexpr std::size_t kNumPublishedCases = 3;
+
+struct Measure {
+  const char* prefix;
+  bool is_count;
+  double (*get)(const OpenLoopResult& result);
+};
+constexpr Measure kPublishedMeasures[] = {
+    {"n_colliding_states_", true,
+     [](const OpenLoopResult& r) { return static_cast<double>(r.colliding_states); }},
+    {"gp_cost_", false, [](const OpenLoopResult& r) { return r.gp_cost; }},
+    {"obstacle_cost_", false, [](const OpenLoopResult& r) { return r.obstacle_cost; }},
+};
+constexpr Measure kOwnMeasures[] = {
+    {"iterations_", true,
+     [](const OpenLoopResult& r) { return static_cast<double>(r.iterations); }},
+};
+
+struct Column {
+  std::string name;
+  Knowledge knowledge;
+  double (*get)(const OpenLoopResult& result);
+};
+
+std::vector<Column> Columns(const OpenLoopStudy& study) {
+  std::vector<Column> columns;
+  const auto add = [&](const Measure& measure, const CaseName& entry) {
+    if (study.rows.empty() || !study.rows.front().results.contains(entry.knowledge)) return;
+    columns.push_back({std::string(measure.prefix) + entry.name, entry.knowledge, measure.get});
+  };
+  for (const Measure& measure : kPublishedMeasures) {
+    for (std::size_t c = 0; c < kNumPublishedCases; ++c) add(measure, kCases[c]);
+  }
+  for (const Measure& measure : kPublishedMeasures) {
+    for (std::size_t c = kNumPublishedCases; c < std::size(kCases); ++c) add(measure, kCases[c]);
+  }
+  for (const Measure& measure : kOwnMeasures) {
+    for (const CaseName& entry : kCases) add(measure, entry);
+  }
+  return columns;
+}
+
+const Measure* PublishedMeasure(const std::string& column) {
+  for (const Measure& measure : kPublishedMeasures) {
+    if (column.starts_with(measure.prefix)) return &measure;
+  }
+  return nullptr;
+}
+
+// Speeds are decimal fractions: to a micrometre a second they are the same.
+using Key = std::pair<int, long>;
+Key MakeKey(double pair, double speed_m_s) {
+  return {static_cast<int>(std::lround(pair)), std::lround(speed_m_s * 1e6)};
+}
+
+std::map<Key, std::size_t> Index(const CsvTable& table, const std::string& path) {
+  const auto pair = table.Find(kPair), speed = table.Find(kSpeed);
+  if (!pair || !speed) {
+    throw InputError(path, 1, pair ? kSpeed : kPair, "there is no such column");
+  }
+  std::map<Key, std::size_t> rows;
+  for (std::size_t row = 0; row < table.num_rows(); ++row) {
+    const auto p = table.At(row, *pair), s = table.At(row, *speed);
+    const std::string which = "row " + std::to_string(row + 1);
+    if (!p || !s) throw InputError(path, which + " has no pair or no speed");
+    if (!rows.emplace(MakeKey(*p, *s), row).second) {
+      throw InputError(path, which + " repeats the pair and speed of an earlier one");
+    }
+  }
+  return rows;
+}
+
+double RelativeDifference(double ours, double published) {
+  if (ours == published) return 0;
+  return std::abs(ours - published) / std::max(std::abs(published), 1e-300);
+}
+
+template <class... Values>
+std::string Print(const char* format, Values... values) {
+  char text[256];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+}  // namespace
+
+CsvTable MakeOpenLoopTable(const OpenLoopStudy& study) {
+  const std::vector<Column> columns = Columns(study);
+  std::vector<std::string> names = {kPair, kSpeed};
+  for (const Column& column : columns) names.push_back(column.name);
+  names.push_back("n_ignored_spheres");
+  CsvTable table(names);
+  for (const OpenLoopRow& row : study.rows) {
+    std::vector<std::optional<double>> fields = {row.pair, row.speed_m_s};
+    for (const Column& column : columns) {
+      fields.push_back(column.get(row.results.at(column.knowledge)));
+    }
+    fields.push_back(static_cast<double>(study.ignored_spheres.size()));
+    table.AddRow(std::move(fields));
+  }
+  return table;
+}
+
+int TableComparison::CountsCompared() const {
+  int sum = 0;
+  for (const ColumnComparison& column : columns) sum += column.is_count ? column.compared : 0;
+  return sum;
+}
+
+int TableComparison::CountsAgreeing() const {
+  int sum = 0;
+  for (const ColumnComparison& column : columns) sum += column.is_count ? column.agreeing : 0;
+  return sum;
+}
+
+TableComparison CompareTables(const CsvTable& ours, const CsvTable& published,
+                              const std::string& published_path) {
+  const std::map<Key, std::size_t> our_rows = Index(ours, "rows.csv");
+  const std::map<Key, std::size_t> their_rows = Index(published, published_path);
+
+  TableComparison comparison;
+  for (const auto& [key, row] : our_rows) {
+    ++(their_rows.contains(key) ? comparison.rows_compared : comparison.rows_only_ours);
+  }
+  comparison.rows_only_published = static_cast<int>(their_rows.size()) - comparison.rows_compared;
+
+  for (const std::string& name : ours.columns()) {
+    const Measure* const measure = PublishedMeasure(name);
+    const auto our_column = ours.Find(name), their_column = published.Find(name);
+    if (measure == nullptr || !their_column) continue;
+    ColumnComparison column;
+    column.column = name;
+    column.is_count = measure->is_count;
+    for (const auto& [key, our_row] : our_rows) {
+      const auto their_row = their_rows.find(key);
+      if (their_row == their_rows.end()) continue;
+      const auto a = ours.At(our_row, *our_column);
+      const auto b = published.At(their_row->second, *their_column);
+      if (!a || !b) continue;
+      ++column.compared;
+      column.mean_ours += *a;
+      column.mean_published += *b;
+      const double difference = RelativeDifference(*a, *b);
+      column.largest_relative_difference = std::max(column.largest_relative_difference, difference);
+      if (difference <= (measure->is_count ? 0 : kCostTolerance)) {
+        ++column.agreeing;
+      } else {
+        comparison.differences.push_back(
+            {key.first, static_cast<double>(key.second) * 1e-6, name, *a, *b});
+      }
+    }
+    if (column.compared == 0) continue;
+    column.mean_ours /= column.compared;
+    column.mean_published /= column.compared;
+    comparison.columns.push_back(column);
+  }
+  std::stable_sort(comparison.differences.begin(), comparison.differences.end(),
+                   [](const EntryDifference& a, const EntryDifference& b) {
+                     return std::pair(a.pair, a.speed_m_s) < std::pair(b.pair, b.speed_m_s);
+                   });
+  return comparison;
+}
+
+std::string Describe(const TableComparison& comparison) {
+  std::string text = Print("%d rows compared", comparison.rows_compared);
+  if (comparison.rows_only_published > 0) {
+    text += Print("; %d published rows were not run", comparison.rows_only_published);
+  }
+  if (comparison.rows_only_ours > 0) {
+    text += Print("; %d of our rows are not published", comparison.rows_only_ours);
+  }
+  text += Print("\ncolliding-state counts: %d of %d agree\n", comparison.CountsAgreeing(),
+                comparison.CountsCompared());
+  text += Print("%-38s %8s %8s %12s %14s %14s\n", "column", "agree", "of", "largest rel.",
+                "our mean", "published mean");
+  for (const ColumnComparison& column : comparison.columns) {
+    text += Print("%-38s %8d %8d %12.2e %14.6f %14.6f\n", column.column.c_str(), column.agreeing,
+                  column.compared, column.largest_relative_difference, column.mean_ours,
+                  column.mean_published);
+  }
+  text += Print("(costs agree within %.0e)\n", kCostTolerance);
+  for (const EntryDifference& entry : comparison.differences) {
+    text += Print("differs: pair %d, %g m/s, %s: %.15g, published %.15g\n", entry.pair,
+                  entry.speed_m_s, entry.column.c_str(), entry.ours, entry.published);
+  }
+  return text;
+}
+
+}  // namespace sidestep
