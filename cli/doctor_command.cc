@@ -52,7 +52,8 @@ void CheckGl(Report& report) {
   const std::string detail =
       "MUJOCO_GL=" + std::string(choice == nullptr ? "(not set: osmesa)" : choice);
   try {
-    report.Good("rendering", DescribeGl() + ", " + detail);
+    const GlContext gl;
+    report.Good("rendering", gl.renderer() + ", OpenGL " + gl.version() + ", " + detail);
   } catch (const std::exception& error) {
     report.Bad("rendering", error.what(),
                "unset MUJOCO_GL (only osmesa is built in; no display or GPU is needed)");

@@ -94,10 +94,8 @@ WorldFactory SimulatedWorlds(const DataPaths& paths) {
     world.sensor = &simulation->sensor();
     world.truth = &simulation->truth();
     world.model_xml = simulation->model_xml();
-    world.joints = robot.joint_names();
-    for (const MovingObstacle& obstacle : scenario.moving_obstacles) {
-      world.obstacles.push_back(obstacle.name);
-    }
+    world.joints = simulation->joints();
+    world.obstacles = simulation->obstacles();
     world.owner = std::move(simulation);
     return world;
   };

@@ -79,6 +79,9 @@ struct Recording {
   std::map<std::string, double> metrics;  ///< of this episode; NaN where one does not apply
 };
 
+/// Version of the HDF5 library, e.g. "1.10.8".
+std::string Hdf5Version();
+
 /// Writes `recording` as HDF5 (layout: docs/trace.md). Equal recordings give equal bytes.
 /// @throws InputError if the file cannot be written.
 void WriteRecording(const Recording& recording, const std::string& path);

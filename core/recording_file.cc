@@ -1,3 +1,5 @@
+#include <hdf5.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -492,6 +494,12 @@ Recording ReadRecording(const std::string& path) {
   ReadTruth(file, &recording);
   ReadCycles(file, &recording);
   return recording;
+}
+
+std::string Hdf5Version() {
+  unsigned major = 0, minor = 0, release = 0;
+  H5get_libversion(&major, &minor, &release);
+  return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(release);
 }
 
 }  // namespace sidestep

@@ -1,0 +1,139 @@
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "core/input_error.h"
+#include "core/recording.h"
+#include "render/comparison.h"
+#include "render/gl_context.h"
+#include "render/video.h"
+
+namespace sidestep {
+namespace {
+
+struct RenderOptions {
+  std::vector<std::string> traces;
+  std::string video, still;
+  std::optional<double> at_s;
+  std::string size = "1280x720";
+  int frames_per_second = 30;
+  double playback_speed = 1;
+  std::string camera;
+  std::vector<std::string> titles;
+};
+
+volatile std::sig_atomic_t interrupted = 0;  // the one thing a signal handler may touch
+
+// While it lives, Ctrl-C only sets `interrupted`.
+class InterruptGuard {
+ public:
+  InterruptGuard() : previous_(std::signal(SIGINT, [](int) { interrupted = 1; })) {}
+  ~InterruptGuard() { std::signal(SIGINT, previous_); }
+  InterruptGuard(const InterruptGuard&) = delete;
+  InterruptGuard& operator=(const InterruptGuard&) = delete;
+
+ private:
+  void (*previous_)(int);
+};
+
+void ParseSize(const std::string& text, PictureOptions* picture) {
+  int used = 0;
+  const bool parsed =
+      std::sscanf(text.c_str(), "%dx%d%n", &picture->width, &picture->height, &used) == 2 &&
+      static_cast<std::size_t>(used) == text.size();
+  constexpr int kMaxPixels = 7680;
+  if (!parsed || picture->width < 2 || picture->height < 2 || picture->width > kMaxPixels ||
+      picture->height > kMaxPixels) {
+    throw InputError("--size", "must be WIDTHxHEIGHT in pixels, each 2 to 7680, is '" + text + "'");
+  }
+  if (picture->width % 2 != 0 || picture->height % 2 != 0) {
+    throw InputError("--size", "width and height must be even, is '" + text + "'");
+  }
+}
+
+bool ShowProgress(int done, int total) {
+  if (isatty(STDERR_FILENO) != 0) {
+    constexpr int kWidth = 40;
+    const int filled = kWidth * done / total;
+    std::fprintf(stderr, "\r[%s%s] %d of %d frames%s", std::string(filled, '#').c_str(),
+                 std::string(kWidth - filled, '.').c_str(), done, total, done == total ? "\n" : "");
+  } else if (done % std::max(1, total / 4) == 0 && done < total) {
+    std::fprintf(stderr, "rendered %d of %d frames\n", done, total);
+  }
+  return interrupted == 0;
+}
+
+std::vector<NamedRecording> ReadTraces(const std::vector<std::string>& paths) {
+  std::vector<NamedRecording> traces;
+  for (const std::string& path : paths) traces.push_back({path, ReadRecording(path)});
+  return traces;
+}
+
+int Render(const RenderOptions& options) {
+  if (options.video.empty() && options.still.empty()) {
+    throw InputError("--out", "give --out FILE.mp4, --still FILE.png, or both");
+  }
+  if (options.at_s && options.still.empty()) throw InputError("--at", "needs --still");
+  PictureOptions picture;
+  ParseSize(options.size, &picture);
+  picture.camera = options.camera;
+  picture.titles = options.titles;
+  picture.playback_speed = options.playback_speed;
+
+  const std::vector<NamedRecording> traces = ReadTraces(options.traces);
+  const GlContext gl;
+  Comparison comparison(gl, traces, picture);
+  if (!options.still.empty()) {
+    RenderStill(comparison, options.still,
+                options.at_s ? std::optional(EpisodeTime(*options.at_s)) : std::nullopt);
+    std::printf("written  %s\n", options.still.c_str());
+  }
+  if (options.video.empty()) return 0;
+
+  const InterruptGuard guard;
+  const auto begin = std::chrono::steady_clock::now();
+  const int frames = RenderVideo(comparison, options.video,
+                                 {options.frames_per_second, options.playback_speed}, ShowProgress);
+  if (interrupted != 0) {
+    std::fprintf(stderr, "\nstopped; %s was not written\n", options.video.c_str());
+    return 1;
+  }
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+  std::printf("written  %s: %d frames, %.1f frames/s, %s\n", options.video.c_str(), frames,
+              frames / elapsed.count(), gl.renderer().c_str());
+  return 0;
+}
+
+}  // namespace
+
+void AddRenderCommand(CommandLine& line) {
+  auto options = std::make_shared<RenderOptions>();
+  CLI::App* const render = line.app.add_subcommand(
+      "render", "Film one or more traces side by side, without a display; or draw a still");
+  render->add_option("TRACE", options->traces, "trace.h5 of `sidestep run`, one or more")
+      ->required();
+  render->add_option("--out", options->video, "The video to write, FILE.mp4");
+  render->add_option("--still", options->still, "A picture to write, FILE.png");
+  render
+      ->add_option("--at", options->at_s,
+                   "The still's moment [s] [the first contact, else the least clearance]")
+      ->check(CLI::Range(0.0, 1e6));
+  render->add_option("--size", options->size, "WIDTHxHEIGHT of the whole picture [1280x720]");
+  render->add_option("--fps", options->frames_per_second, "Frames a second of video [30]")
+      ->check(CLI::Range(1, 240));
+  render->add_option("--speed", options->playback_speed, "Playback speed, 0.5 is half [1]")
+      ->check(CLI::Range(0.001, 1000.0));
+  render->add_option("--camera", options->camera, "A camera of the model [chosen to fit]");
+  render->add_option("--title", options->titles,
+                     "A title for each trace [what its planner was told]");
+  render->callback([&line, options] { line.exit_code = Render(*options); });
+}
+
+}  // namespace sidestep
