@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -10,10 +11,17 @@ namespace sidestep {
 class InputError : public std::runtime_error {
  public:
   InputError(const std::string& file, int line, const std::string& key, const std::string& why)
-      : std::runtime_error(file + ":" + std::to_string(line) + ": " +
-                           (key.empty() ? "" : key + ": ") + why) {}
+      : InputError(file + ":" + std::to_string(line), (key.empty() ? "" : key + ": ") + why) {}
   InputError(const std::string& what, const std::string& why)
-      : std::runtime_error(what + ": " + why) {}
+      : std::runtime_error(OneLine(what + ": " + why)) {}
+
+ private:
+  // Messages quote what stands in files, and that may hold anything.
+  static std::string OneLine(std::string text) {
+    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 32; };
+    std::replace_if(text.begin(), text.end(), is_control, ' ');
+    return text;
+  }
 };
 
 }  // namespace sidestep

@@ -100,12 +100,18 @@ void CheckOneDocument(const std::string& text, const std::string& name) {
   }
 }
 
+// `text` in quotes, cut where it would make a message unreadable.
+std::string Quote(const std::string& text) {
+  constexpr std::size_t kLongest = 60;
+  return "'" + (text.size() <= kLongest ? text : text.substr(0, kLongest) + "...") + "'";
+}
+
 std::string Describe(const YAML::Node& node) {
   switch (node.Type()) {
     case YAML::NodeType::Null:
       return "empty";
     case YAML::NodeType::Scalar:
-      return "'" + node.Scalar() + "'";
+      return Quote(node.Scalar());
     case YAML::NodeType::Sequence:
       return "a list";
     case YAML::NodeType::Map:
@@ -168,11 +174,12 @@ struct YamlReader::Node {
     const std::string& text = node.Scalar();
     if (!YAML::convert<double>::decode(node, value)) {
       double ignored = 0;
-      const auto parsed = std::from_chars(text.data(), text.data() + text.size(), ignored);
-      if (parsed.ec == std::errc::result_out_of_range) {
+      const char* const end = text.data() + text.size();
+      const auto parsed = std::from_chars(text.data(), end, ignored);
+      if (parsed.ec == std::errc::result_out_of_range && parsed.ptr == end) {
         FailAt(node, key, "is out of range: " + text);
       }
-      FailAt(node, key, "must be a number, is '" + text + "'");
+      FailAt(node, key, "must be a number, is " + Quote(text));
     }
     if (!std::isfinite(value)) FailAt(node, key, "must be finite, is " + text);
     return value;
@@ -326,7 +333,7 @@ std::string YamlReader::GetChoice(const std::string& key,
   if (std::find(choices.begin(), choices.end(), value) == choices.end()) {
     std::string list;
     for (const std::string& choice : choices) list += (list.empty() ? "" : ", ") + choice;
-    Fail(key, "must be one of " + list + ", is '" + value + "'");
+    Fail(key, "must be one of " + list + ", is " + Quote(value));
   }
   return value;
 }
