@@ -5,6 +5,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "planner/gauss_newton_planner.h"
 #include "planner/gp_planner.h"
 #include "planner/straight_line_planner.h"
 
@@ -17,6 +18,10 @@ struct Entry {
 };
 
 constexpr std::array kPlanners = {
+    Entry{"gauss_newton",
+          [](const RobotModel& robot, const PlannerSettings& settings) -> std::unique_ptr<Planner> {
+            return std::make_unique<GaussNewtonPlanner>(robot, settings);
+          }},
     Entry{"gpmp",
           [](const RobotModel& robot, const PlannerSettings& settings) -> std::unique_ptr<Planner> {
             return std::make_unique<GpPlanner>(robot, settings);

@@ -168,7 +168,8 @@ TEST(PlannerRegistry, NamesThePlannersThereAreWhenAskedForAnother) {
     MakePlanner("chomp", MakePlanarArm(), {});
     FAIL() << "was accepted";
   } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "unknown planner 'chomp'; there are: gpmp, straight_line");
+    EXPECT_STREQ(error.what(),
+                 "unknown planner 'chomp'; there are: gauss_newton, gpmp, straight_line");
   }
 }
 

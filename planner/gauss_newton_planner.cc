@@ -1,0 +1,45 @@
+#include "planner/gauss_newton_planner.h"
+
+#include "planner/first_guess.h"
+#include "planner/gauss_newton.h"
+
+namespace sidestep {
+
+GaussNewtonPlanner::GaussNewtonPlanner(const RobotModel& robot, const PlannerSettings& settings)
+    : Planner(robot), settings_(settings) {
+  CheckPlannerSettings(settings);
+}
+
+PlanResult GaussNewtonPlanner::DoPlan(const PlanRequest& request) const {
+  const Trajectory guess =
+      request.initial ? MakeWarmStart(request) : MakeDirectMotion(request, Timing::kWholeTime);
+  GaussNewtonOptions options;
+  options.epsilon_m = settings_.epsilon_m;
+  options.sigma_obs = settings_.sigma_obs;
+  options.num_interpolated = settings_.num_interpolated;
+  options.qc = settings_.qc;
+  options.max_iterations = settings_.max_iterations;
+  options.relative_decrease = settings_.function_tolerance;
+
+  // States before the last fixed one decide nothing.
+  const int num_fixed = request.num_fixed, num_solved = request.num_states - num_fixed + 1;
+  GaussNewton problem(
+      robot(),
+      {guess.t_s.tail(num_solved), guess.q.rightCols(num_solved), guess.v.rightCols(num_solved)},
+      options);
+  problem.AddPrior(0, guess.q.col(num_fixed - 1), guess.v.col(num_fixed - 1), settings_.sigma_goal);
+  problem.AddPrior(num_solved - 1, request.q_goal, Eigen::VectorXd::Zero(robot().num_joints()),
+                   settings_.sigma_goal);
+  for (int k = 1; k < num_solved; ++k) problem.SetField(k, *request.field, request.start);
+  const GaussNewtonSummary summary = problem.Solve();
+
+  Trajectory found = guess;  // whose fixed states stay to the bit
+  found.q.rightCols(num_solved - 1) = problem.GetTrajectory().q.rightCols(num_solved - 1);
+  found.v.rightCols(num_solved - 1) = problem.GetTrajectory().v.rightCols(num_solved - 1);
+  PlanResult result = MakeResult(request, found, summary.converged);
+  result.iterations = summary.iterations();
+  result.cost = problem.ComputeCost();
+  return result;
+}
+
+}  // namespace sidestep

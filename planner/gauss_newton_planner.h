@@ -1,0 +1,24 @@
+#pragma once
+
+#include "planner/planner.h"
+#include "planner/planner_settings.h"
+
+namespace sidestep {
+
+/// `gauss_newton`: the solver of the published experiments (planner/gauss_newton.h), as a planner:
+/// plain Gauss-Newton from the first guess, fixed states held by priors of sigma_goal, no limits,
+/// no second try. A yardstick: what undamped steps find depends on how they end, and the limits of
+/// the robot may be exceeded; the result says so. Settings: max_iterations and function_tolerance
+/// bound the solve; the three switches of limits do nothing.
+class GaussNewtonPlanner final : public Planner {
+ public:
+  /// @throws std::invalid_argument for settings out of range.
+  GaussNewtonPlanner(const RobotModel& robot, const PlannerSettings& settings);
+
+ private:
+  PlanResult DoPlan(const PlanRequest& request) const override;
+
+  PlannerSettings settings_;
+};
+
+}  // namespace sidestep
