@@ -1,0 +1,86 @@
+#include "render/captions.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "render/timeline.h"
+
+namespace sidestep {
+namespace {
+
+constexpr double kNear_m = 0.05;
+
+struct Wording {
+  const char* knowledge;
+  Title title;
+};
+
+std::string Millimetres(double metres) {
+  return std::to_string(std::lround(1000 * metres)) + " mm";
+}
+
+std::string Seconds(double seconds) {
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), "%.2f s", seconds);
+  return text.data();
+}
+
+}  // namespace
+
+Title TitleOf(const Recording& recording, const std::string& fallback) {
+  const Wording wordings[] = {
+      {"static", {"Static", "saw the world once, at the start"}},
+      {"execute_and_update", {"Execute and update", "re-plans around where things are now"}},
+      {"prediction", {"Prediction", "re-plans around where things will be"}},
+      {"full_knowledge", {"Full knowledge", "is told the true future"}},
+  };
+  const auto knowledge = recording.header.find("knowledge");
+  if (knowledge == recording.header.end()) return {fallback, ""};
+  for (const Wording& wording : wordings) {
+    if (knowledge->second == wording.knowledge) return wording.title;
+  }
+  return {knowledge->second, ""};
+}
+
+Color ColorOf(Mood mood) {
+  switch (mood) {
+    case Mood::kNeutral:
+      return {52, 60, 72};
+    case Mood::kGood:
+      return {28, 122, 68};
+    case Mood::kNear:
+      return {166, 104, 10};
+    case Mood::kBad:
+      return {196, 30, 34};
+  }
+  return {};
+}
+
+Status StatusAt(const Recording& recording, EpisodeTime t) {
+  const std::optional<Touch> touch = FirstTouch(recording);
+  if (touch && touch->t <= t) {
+    return {"CONTACT at " + Seconds(touch->t.seconds()) +
+                (touch->object.empty() ? "" : " with " + touch->object),
+            Mood::kBad};
+  }
+  const std::optional<Clearance> least = LeastClearance(recording, t);
+  const std::string least_text = least ? "least clearance " + Millimetres(least->clearance_m) : "";
+  const auto goal = recording.metrics.find("time_to_goal_s");
+  const bool knows_goal = goal != recording.metrics.end();
+  if (knows_goal && goal->second <= t.seconds()) {
+    return {"goal reached at " + Seconds(goal->second) + (least ? ", " + least_text : ""),
+            Mood::kGood};
+  }
+  if (knows_goal && t >= EndOf(recording)) {
+    return {"goal not reached" + (least ? ", " + least_text : ""), Mood::kNear};
+  }
+  const std::optional<Clearance> now = ClearanceAt(recording, t);
+  if (!now) return {"", Mood::kNeutral};
+  return {"clearance " + Millimetres(now->clearance_m) +
+              (least ? ", least so far " + Millimetres(least->clearance_m) : ""),
+          now->clearance_m < kNear_m ? Mood::kNear : Mood::kNeutral};
+}
+
+}  // namespace sidestep

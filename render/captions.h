@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+
+#include "core/recording.h"
+#include "core/time.h"
+#include "render/image.h"
+
+namespace sidestep {
+
+/// A trace's name and, in plain words, what its planner was told about the moving world.
+struct Title {
+  std::string name;
+  std::string explanation;  ///< may be empty
+};
+/// From the header's `knowledge`; without one, `fallback` is the name.
+Title TitleOf(const Recording& recording, const std::string& fallback);
+
+enum class Mood { kNeutral, kGood, kNear, kBad };
+Color ColorOf(Mood mood);  ///< for a bar under white text
+
+/// How an episode stands at one moment.
+struct Status {
+  std::string text;
+  Mood mood = Mood::kNeutral;
+};
+/// A contact stays in the status for good. The goal counts as reached at the metric
+/// `time_to_goal_s`.
+Status StatusAt(const Recording& recording, EpisodeTime t);
+
+}  // namespace sidestep

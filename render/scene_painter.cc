@@ -1,0 +1,147 @@
+#include "render/scene_painter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/input_error.h"
+#include "sim/mujoco_pose.h"
+
+namespace sidestep {
+namespace {
+
+constexpr int kMaxGeoms = 2000;
+constexpr double kFieldOfView_deg = 32;  // upright; narrow enough to keep shapes true
+constexpr double kPathWidth = 0.011;     // of the picture's height
+constexpr HorizonOffset kTouchShown(0.25);
+constexpr double kTouchRadius_m = 0.045;
+
+// Sets what the model says about its own drawing. Software draws it, so the shadow map is of
+// moderate size and reflections are off.
+mjModel& Prepare(mjModel& model, int width, int height) {
+  model.vis.global.offwidth = width;
+  model.vis.global.offheight = height;
+  model.vis.global.fovy = static_cast<float>(kFieldOfView_deg);
+  model.vis.quality.offsamples = 4;
+  model.vis.quality.shadowsize = 2048;
+  return model;
+}
+
+}  // namespace
+
+ScenePainter::ScenePainter(const GlContext&, TraceModel& trace, int width, int height)
+    : trace_(trace),
+      scene_(Prepare(trace.model(), width, height), kMaxGeoms),
+      drawing_(trace.model()) {
+  scene_.get().flags[mjRND_SHADOW] = 1;
+  scene_.get().flags[mjRND_REFLECTION] = 0;
+  mjv_defaultFreeCamera(&trace_.model(), &camera_);
+}
+
+Frustum ScenePainter::FullFrustum(int width, int height) {
+  const double up = std::tan(kFieldOfView_deg / 2 * std::numbers::pi / 180);
+  const double right = up * width / height;
+  return {-right, right, -up, up};
+}
+
+void ScenePainter::LookFrom(const CameraView& view) {
+  constexpr double kDegrees = 180 / std::numbers::pi;
+  mjv_defaultCamera(&camera_);
+  camera_.type = mjCAMERA_FREE;
+  std::copy(view.lookat_m.data(), view.lookat_m.data() + 3, camera_.lookat);
+  camera_.distance = view.distance_m;
+  camera_.azimuth = view.azimuth_rad * kDegrees;
+  camera_.elevation = view.elevation_rad * kDegrees;
+}
+
+void ScenePainter::LookThrough(const std::string& camera) {
+  const mjModel& model = trace_.model();
+  const int id = mj_name2id(&model, mjOBJ_CAMERA, camera.c_str());
+  if (id < 0) {
+    std::string known;
+    for (int i = 0; i < model.ncam; ++i) {
+      const char* const name = mj_id2name(&model, mjOBJ_CAMERA, i);
+      if (name != nullptr) known += (known.empty() ? "" : ", ") + std::string(name);
+    }
+    throw InputError("--camera", "'" + camera + "' is not in " + trace_.name() + "; it has " +
+                                     (known.empty() ? "none" : known));
+  }
+  mjv_defaultCamera(&camera_);
+  camera_.type = mjCAMERA_FIXED;
+  camera_.fixedcamid = id;
+}
+
+// What an obstacle collides with, where its picture is another body.
+void ScenePainter::DrawContactBoxes(Overlay& overlay) const {
+  constexpr int kFirstHiddenGroup = 3;
+  constexpr Color kGlass = {70, 84, 104};
+  const mjModel& model = trace_.model();
+  for (int geom = 0; geom < model.ngeom; ++geom) {
+    const bool is_hidden = model.geom_group[geom] >= kFirstHiddenGroup;
+    const bool collides = model.geom_contype[geom] != 0 || model.geom_conaffinity[geom] != 0;
+    if (trace_.ObstacleOf(geom) < 0 || !is_hidden || !collides ||
+        model.geom_type[geom] != mjGEOM_BOX) {
+      continue;
+    }
+    overlay.DrawBox(GeomPose(trace_.data(), geom),
+                    Eigen::Map<const Eigen::Vector3d>(model.geom_size + 3 * geom), kGlass, 0.06,
+                    0.55);
+  }
+}
+
+void ScenePainter::DrawPredictions(Overlay& overlay, const CycleRecord& cycle, EpisodeTime t) {
+  constexpr double kOpacities[] = {0.28, 0.20, 0.14, 0.10};
+  constexpr HorizonOffset kStep(0.3);
+  constexpr double kApart_m = 0.02;  // nearer ones would be drawn into one another
+  for (const PredictedObject& object : cycle.objects) {
+    if (object.X_WO.empty()) continue;
+    EpisodeTime moment = t;
+    std::optional<Eigen::Vector3d> previous;
+    for (const double opacity : kOpacities) {
+      moment = moment + kStep;
+      const Pose X_WO = PoseAt(object.t, object.X_WO, moment);
+      if (previous && (X_WO.translation() - *previous).norm() < kApart_m) continue;
+      previous = X_WO.translation();
+      overlay.DrawBox(X_WO, object.half_extents_m, kPredictionColor, opacity / 2, 2.5 * opacity);
+    }
+  }
+}
+
+void ScenePainter::TintTouched(const Touch& touch) {
+  constexpr float kShare = 0.6F;
+  const float tint[] = {static_cast<float>(kContactColor.r) / 255,
+                        static_cast<float>(kContactColor.g) / 255,
+                        static_cast<float>(kContactColor.b) / 255};
+  mjvScene& scene = scene_.get();
+  for (int i = 0; i < scene.ngeom; ++i) {
+    mjvGeom& geom = scene.geoms[i];
+    if (geom.objtype != mjOBJ_GEOM || !trace_.BelongsTo(geom.objid, touch.object)) continue;
+    for (int c = 0; c < 3; ++c) geom.rgba[c] += kShare * (tint[c] - geom.rgba[c]);
+  }
+}
+
+Image ScenePainter::Draw(EpisodeTime t) {
+  const CycleRecord* const cycle = CycleInForce(trace_.recording(), t);
+  const Eigen::Matrix3Xd plan =
+      cycle == nullptr ? Eigen::Matrix3Xd(3, 0) : trace_.TipPlan(*cycle, t);
+  const std::optional<Touch> touch = TouchWithin(trace_.recording(), t, kTouchShown);
+  trace_.MoveTo(t);
+  mjvOption option;
+  mjv_defaultOption(&option);
+  mjv_updateScene(&trace_.model(), &trace_.data(), &option, nullptr, &camera_, mjCAT_ALL,
+                  &scene_.get());
+  if (touch) TintTouched(*touch);
+  drawing_.Render(scene_.get());
+  {
+    Overlay overlay(scene_.get(), drawing_.viewport());
+    const double line = std::max(1.5, kPathWidth * drawing_.viewport().height);
+    overlay.DrawPath(trace_.TipTrail(t), kTrailColor, line);
+    overlay.DrawPath(plan, kPlanColor, line);
+    DrawContactBoxes(overlay);
+    if (cycle != nullptr) DrawPredictions(overlay, *cycle, t);
+    if (touch) overlay.DrawSpot(touch->p_W, kTouchRadius_m, kContactColor);
+  }
+  return drawing_.Read();
+}
+
+}  // namespace sidestep

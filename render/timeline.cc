@@ -1,0 +1,130 @@
+#include "render/timeline.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sidestep {
+namespace {
+
+// Where `t` falls among increasing times: between `before` and `after`, `share` of the way.
+struct Position {
+  std::size_t before = 0, after = 0;
+  double share = 0;
+};
+
+template <typename Samples, typename GetTime>
+Position Locate(const Samples& samples, EpisodeTime t, GetTime time_of) {
+  const auto next = std::upper_bound(
+      samples.begin(), samples.end(), t,
+      [&](EpisodeTime moment, const auto& sample) { return moment < time_of(sample); });
+  const auto after = static_cast<std::size_t>(next - samples.begin());
+  if (after == 0) return {0, 0, 0};
+  if (after == samples.size()) return {after - 1, after - 1, 0};
+  const EpisodeTime begin = time_of(samples[after - 1]), end = time_of(samples[after]);
+  return {after - 1, after, (t - begin).seconds() / (end - begin).seconds()};
+}
+
+Pose Between(const Pose& a, const Pose& b, double share) {
+  return Pose(a.rotation().slerp(share, b.rotation()),
+              a.translation() + share * (b.translation() - a.translation()));
+}
+
+template <typename Sample>
+EpisodeTime TimeOfSample(const Sample& sample) {
+  return sample.t;
+}
+
+Touch TouchOf(const TruthSample& sample) {
+  const bool timed = std::isfinite(sample.contact_s);
+  return {timed ? EpisodeTime(sample.contact_s) : sample.t, sample.contact_object,
+          sample.p_WContact};
+}
+
+}  // namespace
+
+EpisodeTime EndOf(const Recording& recording) {
+  EpisodeTime end;
+  if (!recording.control.empty()) end = std::max(end, recording.control.back().t);
+  if (!recording.truth.empty()) end = std::max(end, recording.truth.back().t);
+  return end;
+}
+
+Eigen::VectorXd JointsAt(const Recording& recording, EpisodeTime t) {
+  const Position at = Locate(recording.control, t, TimeOfSample<ControlSample>);
+  const Eigen::VectorXd& q0 = recording.control[at.before].q;
+  return q0 + at.share * (recording.control[at.after].q - q0);
+}
+
+Pose PoseAt(const std::vector<EpisodeTime>& times, const std::vector<Pose>& poses, EpisodeTime t) {
+  const Position at = Locate(times, t, [](EpisodeTime time) { return time; });
+  return Between(poses[at.before], poses[at.after], at.share);
+}
+
+std::vector<Pose> ObstaclesAt(const Recording& recording, EpisodeTime t) {
+  std::vector<Pose> poses;
+  if (recording.truth.empty()) return poses;
+  const Position at = Locate(recording.truth, t, TimeOfSample<TruthSample>);
+  const std::vector<Pose>& before = recording.truth[at.before].X_WO;
+  const std::vector<Pose>& after = recording.truth[at.after].X_WO;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    poses.push_back(Between(before[i], after[i], at.share));
+  }
+  return poses;
+}
+
+double ObstacleSpeedAt(const Recording& recording, EpisodeTime t) {
+  constexpr HorizonOffset kHalfWindow(0.025);
+  const EpisodeTime begin = std::max(EpisodeTime(0), t - kHalfWindow);
+  const EpisodeTime end = std::min(EndOf(recording), t + kHalfWindow);
+  if (end <= begin) return 0;
+  const std::vector<Pose> first = ObstaclesAt(recording, begin);
+  const std::vector<Pose> last = ObstaclesAt(recording, end);
+  double distance_m = 0;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    distance_m = std::max(distance_m, (last[i].translation() - first[i].translation()).norm());
+  }
+  return distance_m / (end - begin).seconds();
+}
+
+const CycleRecord* CycleInForce(const Recording& recording, EpisodeTime t) {
+  const CycleRecord* in_force = nullptr;
+  for (const CycleRecord& cycle : recording.cycles) {
+    if (cycle.accepted && cycle.plan.num_states() > 0 && cycle.t_effect <= t) in_force = &cycle;
+  }
+  return in_force;
+}
+
+std::optional<Clearance> ClearanceAt(const Recording& recording, EpisodeTime t) {
+  if (recording.truth.empty()) return std::nullopt;
+  const TruthSample& sample =
+      recording.truth[Locate(recording.truth, t, TimeOfSample<TruthSample>).before];
+  return Clearance{sample.t, sample.clearance_m};
+}
+
+std::optional<Clearance> LeastClearance(const Recording& recording, EpisodeTime t) {
+  std::optional<Clearance> least;
+  for (const TruthSample& sample : recording.truth) {
+    if (sample.t > t) break;
+    if (!least || sample.clearance_m < least->clearance_m) least = {sample.t, sample.clearance_m};
+  }
+  return least;
+}
+
+std::optional<Touch> FirstTouch(const Recording& recording) {
+  for (const TruthSample& sample : recording.truth) {
+    if (sample.in_contact) return TouchOf(sample);
+  }
+  return std::nullopt;
+}
+
+std::optional<Touch> TouchWithin(const Recording& recording, EpisodeTime t, HorizonOffset window) {
+  std::optional<Touch> latest;
+  for (const TruthSample& sample : recording.truth) {
+    if (!sample.in_contact) continue;
+    const Touch touch = TouchOf(sample);
+    if (touch.t <= t && sample.t >= t - window) latest = touch;
+  }
+  return latest;
+}
+
+}  // namespace sidestep

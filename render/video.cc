@@ -1,0 +1,32 @@
+#include "render/video.h"
+
+#include <cmath>
+
+#include "core/input_error.h"
+#include "render/video_writer.h"
+
+namespace sidestep {
+
+int RenderVideo(Comparison& comparison, const std::string& path, const VideoOptions& options,
+                const RenderProgress& progress) {
+  constexpr double kRest_s = 1;
+  if (!(options.playback_speed > 0) || !std::isfinite(options.playback_speed)) {
+    throw InputError("--speed", "must be > 0");
+  }
+  VideoWriter video(path, comparison.width(), comparison.height(), options.frames_per_second);
+  const double duration_s = comparison.end().seconds() / options.playback_speed + kRest_s;
+  const int total = static_cast<int>(std::ceil(duration_s * options.frames_per_second));
+  for (int i = 0; i < total; ++i) {
+    const double t_s = options.playback_speed * i / options.frames_per_second;
+    video.Add(comparison.Draw(EpisodeTime(t_s)));
+    if (progress && !progress(i + 1, total)) return i + 1;
+  }
+  video.Finish();
+  return total;
+}
+
+void RenderStill(Comparison& comparison, const std::string& path, std::optional<EpisodeTime> t) {
+  WritePng(comparison.Draw(t.value_or(comparison.telling_moment())), path);
+}
+
+}  // namespace sidestep

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "render/image.h"
+
+namespace sidestep {
+
+/// Writes an MP4 file: H.264, yuv420p (BT.709), the index in front so that it plays while it loads.
+/// Equal frames give equal bytes. The file appears under its name when Finish() succeeds.
+class VideoWriter {
+ public:
+  /// @throws InputError for an odd or non-positive size, a rate that is not 1 to 240 frames a
+  ///   second, a path that cannot be written, or a libavcodec without libx264.
+  VideoWriter(const std::string& path, int width, int height, int frames_per_second);
+  ~VideoWriter();
+  VideoWriter(const VideoWriter&) = delete;
+  VideoWriter& operator=(const VideoWriter&) = delete;
+
+  /// Appends one frame. @throws InputError if the file cannot take it; std::invalid_argument for
+  /// another size.
+  void Add(const Image& image);
+
+  /// @throws InputError if the file cannot be completed.
+  void Finish();
+
+ private:
+  struct Encoder;
+  std::unique_ptr<Encoder> encoder_;
+};
+
+/// Writes one image as PNG. @throws InputError if it cannot be written.
+void WritePng(const Image& image, const std::string& path);
+
+}  // namespace sidestep
