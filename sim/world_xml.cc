@@ -212,7 +212,7 @@ void AddAssets(XMLElement* world) {
   Set(floor, "name", kFloorMaterial);
   Set(floor, "texture", kFloorMaterial);
   Set(floor, "texuniform", "true");
-  Set(floor, "texrepeat", "1 1");  // squares of half a metre
+  Set(floor, "texrepeat", "1 1");  // squares of one metre
   Set(floor, "specular", "0.1");
   AddMaterial(asset, kBoxMaterial, "0.60 0.49 0.38 1");
   AddMaterial(asset, kObstacleMaterial, "0.85 0.42 0.12 1");
