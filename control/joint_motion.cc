@@ -48,7 +48,7 @@ double SafeAcceleration(const JointMotion& motion, double wanted, const JointBou
   if (CanStopWithin(motion.Next(unsafe, period_s), held, period_s)) return unsafe;
 
   double safe = BrakeAcceleration(motion, bounds, period_s);
-  constexpr int kHalvings = 30;  // far below what a motor can follow
+  constexpr int kHalvings = 20;  // to a millionth of the tick's reach
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = (safe + unsafe) / 2;
     (CanStopWithin(motion.Next(middle, period_s), held, period_s) ? safe : unsafe) = middle;

@@ -1,0 +1,104 @@
+#include "tests/robot/geom_surface.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+namespace sidestep {
+namespace {
+
+constexpr int kSteps = 64;
+constexpr double kPi = 3.141592653589793;
+
+// A profile's point: distance from the axis, height along it.
+using Profile = std::vector<Eigen::Vector2d>;
+
+void AppendLine(const Eigen::Vector2d& from, const Eigen::Vector2d& to, Profile* profile) {
+  for (int i = 0; i <= kSteps; ++i) profile->push_back(from + (to - from) * i / kSteps);
+}
+
+void AppendArc(double radius, double height, double from_rad, double to_rad, Profile* profile) {
+  for (int i = 0; i <= kSteps; ++i) {
+    const double angle = from_rad + (to_rad - from_rad) * i / kSteps;
+    profile->push_back({radius * std::cos(angle), height + radius * std::sin(angle)});
+  }
+}
+
+Eigen::Matrix3Xd Revolve(const Profile& profile) {
+  Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(profile.size()) * kSteps);
+  Eigen::Index column = 0;
+  for (const Eigen::Vector2d& at : profile) {
+    for (int i = 0; i < kSteps; ++i) {
+      const double angle = 2 * kPi * i / kSteps;
+      points.col(column++) << at.x() * std::cos(angle), at.x() * std::sin(angle), at.y();
+    }
+  }
+  return points;
+}
+
+struct Sampler {
+  Eigen::Matrix3Xd operator()(const Box& box) const {
+    Eigen::Matrix3Xd points(3, 6 * (kSteps + 1) * (kSteps + 1));
+    Eigen::Index column = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double side : {-1.0, 1.0}) {
+        for (int i = 0; i <= kSteps; ++i) {
+          for (int k = 0; k <= kSteps; ++k) {
+            Eigen::Vector3d unit;
+            unit(axis) = side;
+            unit((axis + 1) % 3) = 2.0 * i / kSteps - 1;
+            unit((axis + 2) % 3) = 2.0 * k / kSteps - 1;
+            points.col(column++) = unit.cwiseProduct(box.size_m / 2);
+          }
+        }
+      }
+    }
+    return points;
+  }
+  Eigen::Matrix3Xd operator()(const Sphere& sphere) const {
+    return (*this)(Capsule{sphere.radius_m, 0});
+  }
+  Eigen::Matrix3Xd operator()(const Capsule& capsule) const {
+    const double half = capsule.length_m / 2, r = capsule.radius_m;
+    Profile profile;
+    AppendArc(r, -half, -kPi / 2, 0, &profile);
+    AppendLine({r, -half}, {r, half}, &profile);
+    AppendArc(r, half, 0, kPi / 2, &profile);
+    return Revolve(profile);
+  }
+  Eigen::Matrix3Xd operator()(const Cylinder& cylinder) const {
+    const double half = cylinder.length_m / 2, r = cylinder.radius_m;
+    Profile profile;
+    AppendLine({0, -half}, {r, -half}, &profile);
+    AppendLine({r, -half}, {r, half}, &profile);
+    AppendLine({r, half}, {0, half}, &profile);
+    return Revolve(profile);
+  }
+  Eigen::Matrix3Xd operator()(const Ellipsoid& ellipsoid) const {
+    return ellipsoid.semi_axes_m.asDiagonal() * (*this)(Sphere{1.0});
+  }
+};
+
+}  // namespace
+
+Eigen::Matrix3Xd SampleSurface(const Shape& shape) { return std::visit(Sampler{}, shape); }
+
+Shape ShapeOf(const mjModel& model, int geom) {
+  const mjtNum* const size = model.geom_size + 3 * geom;
+  switch (model.geom_type[geom]) {
+    case mjGEOM_BOX:
+      return Box{2 * Eigen::Vector3d(size[0], size[1], size[2])};
+    case mjGEOM_SPHERE:
+      return Sphere{size[0]};
+    case mjGEOM_CAPSULE:
+      return Capsule{size[0], 2 * size[1]};
+    case mjGEOM_CYLINDER:
+      return Cylinder{size[0], 2 * size[1]};
+    case mjGEOM_ELLIPSOID:
+      return Ellipsoid{Eigen::Vector3d(size[0], size[1], size[2])};
+    default:
+      throw std::invalid_argument("a robot's geoms must be primitives");
+  }
+}
+
+}  // namespace sidestep
