@@ -7,8 +7,7 @@
 
 namespace sidestep {
 
-/// One module and what its files may include. Every module may use itself, the C++ library and
-/// Eigen.
+/// One module and what its files may include beside itself, the C++ library, POSIX and Eigen.
 struct ModuleRule {
   std::string name;
   std::vector<std::string> modules;
