@@ -54,15 +54,16 @@ CollisionSphere ReadSphere(const YamlReader& map, int num_joints) {
   return sphere;
 }
 
-std::map<std::string, Eigen::VectorXd> ReadConfigurations(const YamlReader& map,
-                                                          const std::vector<JointLimits>& limits) {
+std::map<std::string, Eigen::VectorXd> ReadConfigurations(
+    const YamlReader& map, const std::vector<std::string>& joint_names,
+    const std::vector<JointLimits>& limits) {
   std::map<std::string, Eigen::VectorXd> configurations;
   for (const std::string& name : map.Keys()) {
     const Eigen::VectorXd q = map.GetVector(name, static_cast<int>(limits.size()));
     for (std::size_t j = 0; j < limits.size(); ++j) {
       const double value = q(static_cast<Eigen::Index>(j));
       if (value < limits[j].q_min || value > limits[j].q_max) {
-        map.Fail(name, "is outside the limits of joint " + std::to_string(j + 1));
+        map.Fail(name, "is outside the limits of " + joint_names[j]);
       }
     }
     configurations[name] = q;
@@ -122,7 +123,8 @@ RobotModel RobotModel::Load(const std::string& models_dir, const std::string& na
   if (std::find(names.begin(), names.end(), name) == names.end()) {
     std::string known;
     for (const std::string& other : names) known += (known.empty() ? "" : ", ") + other;
-    throw InputError(models_dir, "holds no robot '" + name + "' (known: " + known + ")");
+    throw InputError(models_dir, "holds no robot '" + name +
+                                     "' (known: " + (known.empty() ? "none" : known) + ")");
   }
   const std::string path = models_dir + "/" + name + "/robot.yaml";
   RobotModel model = FromFile(path, X_WB);
@@ -164,7 +166,8 @@ RobotModel RobotModel::FromFile(const std::string& path, const Pose& X_WB) {
     model.radii_m_(s) = model.spheres_[static_cast<std::size_t>(s)].radius_m;
   }
 
-  model.configurations_ = ReadConfigurations(file.GetMap("configurations"), model.limits_);
+  model.configurations_ =
+      ReadConfigurations(file.GetMap("configurations"), model.joint_names_, model.limits_);
 
   const YamlReader mount = file.GetMap("mount");
   model.mount_spheres_ = ReadSphereIndices(mount, model.num_spheres());
