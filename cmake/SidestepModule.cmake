@@ -27,12 +27,17 @@ function(sidestep_module name)
     PRIVATE $<BUILD_INTERFACE:sidestep_warnings> ${ARG_PRIVATE_DEPENDS})
 endfunction()
 
-# sidestep_test(<folder>/<name>_test [SOURCES <further file>...] DEPENDS <target>... [SLOW])
+# Everything that the thread sanitizer has to see: `./dev test --all` builds it in the tsan preset.
+add_custom_target(threaded_tests)
+
+# sidestep_test(<folder>/<name>_test [SOURCES <further file>...] DEPENDS <target>...
+#               [SLOW | THREADED])
 #
 # Builds tests/<folder>/<name>_test.cc; ctest runs each of its cases. SLOW cases carry the label
-# "slow", which `./dev test` leaves out and `./dev test --all` runs.
+# "slow", which `./dev test` leaves out and `./dev test --all` runs. THREADED ones, which start
+# threads, carry the label "threaded", and `./dev test --all` runs them under the thread sanitizer.
 function(sidestep_test path)
-  cmake_parse_arguments(ARG "SLOW" "" "SOURCES;DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "SLOW;THREADED" "" "SOURCES;DEPENDS" ${ARGN})
   string(REPLACE "/" "_" target ${path})
   add_executable(${target} ${PROJECT_SOURCE_DIR}/tests/${path}.cc ${ARG_SOURCES})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
@@ -42,6 +47,9 @@ function(sidestep_test path)
   set(properties TIMEOUT 600)
   if(ARG_SLOW)
     list(APPEND properties LABELS slow)
+  elseif(ARG_THREADED)
+    list(APPEND properties LABELS threaded)
+    add_dependencies(threaded_tests ${target})
   endif()
   gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60 DISCOVERY_MODE PRE_TEST
                        PROPERTIES ${properties})
