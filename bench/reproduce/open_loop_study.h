@@ -17,8 +17,8 @@ namespace sidestep {
 struct OpenLoopStudyOptions {
   std::vector<Knowledge> cases = {Knowledge::kStatic, Knowledge::kExecuteAndUpdate,
                                   Knowledge::kFullKnowledge};
-  std::vector<int> pairs;  ///< counted from 1, as published; empty: all
-  bool once = false;       ///< static and full_knowledge are solved once only, as the paper says
+  std::vector<int> pairs = {};  ///< counted from 1, as published; empty: all
+  bool once = false;  ///< static and full_knowledge are solved once only, as the paper says
   /// Static boxes where the authors meant them (BoxAlignment::kIntended) and the product's own
   /// robot, whose mount spheres are ignored: it stands in its table by the published ones.
   bool intended_geometry = false;

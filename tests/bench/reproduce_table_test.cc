@@ -1,0 +1,129 @@
+// Tables of results: reading, writing, comparing with published ones.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "bench/reproduce/csv_table.h"
+#include "bench/reproduce/parallel.h"
+#include "bench/reproduce/published_table.h"
+#include "core/input_error.h"
+
+namespace sidestep {
+namespace {
+
+std::string WriteFile(const std::string& text) {
+  const std::string path = ::testing::TempDir() +
+                           ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".csv";
+  std::ofstream(path, std::ios::binary) << text;
+  return path;
+}
+
+CsvTable Parse(const std::string& text) { return CsvTable::Read(WriteFile(text)); }
+
+TEST(CsvTable, ReadsBackToTheBitWhatItWrites) {
+  CsvTable table({"a", "b"});
+  table.AddRow({0.1, {}});
+  table.AddRow({1.0 / 3, -2e-300});
+  const std::string text = table.ToText();
+  EXPECT_EQ(text.substr(0, 9), "a,b\n0.1,\n");
+  const CsvTable read = Parse(text);
+  EXPECT_EQ(read.At(0, 0), 0.1);
+  EXPECT_EQ(read.At(0, 1), std::nullopt);
+  EXPECT_EQ(read.At(1, 0), 1.0 / 3);
+  EXPECT_EQ(read.At(1, 1), -2e-300);
+}
+
+TEST(CsvTable, TakesCarriageReturnsAndEmptyLines) {
+  const CsvTable table = Parse("a,b\r\n1,2\r\n\r\n3,4\r\n");
+  EXPECT_EQ(table.columns(), (std::vector<std::string>{"a", "b"}));
+  ASSERT_EQ(table.num_rows(), 2u);
+  EXPECT_EQ(table.At(1, 1), 4);
+}
+
+TEST(CsvTable, SaysWhereAFileIsBroken) {
+  struct Broken {
+    const char* text;
+    const char* message;
+  };
+  for (const Broken& test : {
+           Broken{"", ":1: needs a header of column names"},
+           Broken{"a,a\n", ":1: a column comes twice"},
+           Broken{"a,b\n1,2\n3\n", ":3: has 1 fields, the header 2"},
+           Broken{"a,b\n1,two\n", ":2: b: must be a finite number, is 'two'"},
+           Broken{"a,b\n1,nan\n", ":2: b: must be a finite number, is 'nan'"},
+           Broken{"a,b\n1,2x\n", ":2: b: must be a finite number, is '2x'"},
+       }) {
+    const std::string path = WriteFile(test.text);
+    try {
+      CsvTable::Read(path);
+      ADD_FAILURE() << "was accepted: " << test.text;
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.what(), path + test.message);
+    }
+  }
+  EXPECT_THROW(CsvTable::Read("/there/is/no/such.csv"), InputError);
+  EXPECT_THROW(CsvTable::Read(std::filesystem::temp_directory_path()), InputError);
+}
+
+constexpr const char* kHeader =
+    "pair,speed_m_per_s,n_colliding_states_static,gp_cost_static,iterations_static\n";
+
+TEST(TableComparison, CountsWhatAgreesAndListsWhatDoesNot) {
+  const CsvTable ours = Parse(std::string(kHeader) + "1,0.1,2,10,5\n1,0.2,3,20,5\n2,0.1,0,30,5\n");
+  const CsvTable published =
+      Parse(std::string(kHeader) + "2,0.1,0,30.000001,9\n1,0.2,4,25,9\n1,0.1,2,10,9\n");
+  const TableComparison comparison = CompareTables(ours, published, "published.csv");
+  EXPECT_EQ(comparison.rows_compared, 3);
+  EXPECT_EQ(comparison.CountsAgreeing(), 2);
+  EXPECT_EQ(comparison.CountsCompared(), 3);
+  EXPECT_FALSE(comparison.AllCountsAgree());
+  ASSERT_EQ(comparison.columns.size(), 2u) << "iterations are ours and are not compared";
+  EXPECT_EQ(comparison.columns[1].column, "gp_cost_static");
+  EXPECT_EQ(comparison.columns[1].agreeing, 2);
+  EXPECT_DOUBLE_EQ(comparison.columns[1].largest_relative_difference, 0.2);
+  EXPECT_DOUBLE_EQ(comparison.columns[1].mean_ours, 20);
+  ASSERT_EQ(comparison.differences.size(), 2u);
+  EXPECT_EQ(comparison.differences[0].column, "n_colliding_states_static");
+  EXPECT_EQ(comparison.differences[0].published, 4);
+  EXPECT_THAT(Describe(comparison), ::testing::HasSubstr("2 of 3 agree"));
+}
+
+TEST(TableComparison, LeavesOutWhatThePublishedTableDoesNotHave) {
+  const CsvTable ours = Parse(std::string(kHeader) + "1,0.1,2,10,5\n1,0.3,9,9,9\n");
+  const CsvTable published = Parse("speed_m_per_s,gp_cost_static,pair\n0.1,,1\n0.2,1,1\n");
+  const TableComparison comparison = CompareTables(ours, published, "published.csv");
+  EXPECT_EQ(comparison.rows_compared, 1);
+  EXPECT_EQ(comparison.rows_only_ours, 1);
+  EXPECT_EQ(comparison.rows_only_published, 1);
+  EXPECT_TRUE(comparison.columns.empty());
+  EXPECT_TRUE(comparison.AllCountsAgree());
+}
+
+TEST(TableComparison, RefusesATableWithoutItsKeysOrWithARowTwice) {
+  const CsvTable ours = Parse(std::string(kHeader) + "1,0.1,2,10,5\n");
+  for (const char* text : {"pair,gp_cost_static\n1,2\n", "speed_m_per_s,gp_cost_static\n1,2\n",
+                           "pair,speed_m_per_s\n1,\n", "pair,speed_m_per_s\n1,0.1\n1,0.1\n"}) {
+    EXPECT_THROW(CompareTables(ours, Parse(text), "published.csv"), InputError) << text;
+  }
+}
+
+TEST(ParallelFor, CallsEachTaskOnceAndPassesAnExceptionOn) {
+  for (const int num_jobs : {1, 3, 100}) {
+    std::vector<int> calls(50, 0);
+    ParallelFor(50, num_jobs, [&](int i) { ++calls[static_cast<std::size_t>(i)]; });
+    EXPECT_EQ(calls, std::vector<int>(50, 1));
+    EXPECT_THROW(ParallelFor(50, num_jobs,
+                             [](int i) {
+                               if (i == 7) throw std::runtime_error("seven");
+                             }),
+                 std::runtime_error);
+  }
+  ParallelFor(0, 2, [](int) { FAIL(); });
+}
+
+}  // namespace
+}  // namespace sidestep
