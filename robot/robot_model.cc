@@ -148,6 +148,8 @@ RobotModel RobotModel::FromFile(const std::string& path, const Pose& X_WB) {
     }
     model.joint_names_.push_back(name);
     model.dh_.push_back(ReadDhRow(joint.GetMap("dh")));
+    model.cos_alpha_.push_back(std::cos(model.dh_.back().alpha_rad));
+    model.sin_alpha_.push_back(std::sin(model.dh_.back().alpha_rad));
     model.limits_.push_back(ReadLimits(joint.GetMap("limits")));
     joint.CheckNoUnknownKeys();
   }
@@ -196,11 +198,12 @@ RobotModel::Chain RobotModel::ComputeChain(const Eigen::VectorXd& q) const {
   Eigen::Matrix3d R = X_WB_.rotation().toRotationMatrix();
   Eigen::Vector3d p = X_WB_.translation();
   for (int i = 0; i < n; ++i) {
-    const DhRow& row = dh_[static_cast<std::size_t>(i)];
+    const auto k = static_cast<std::size_t>(i);
+    const DhRow& row = dh_[k];
     chain.z_W.col(i) = R.col(2);
     chain.p_WJ.col(i) = p;
     const double c = std::cos(q(i) + row.theta_rad), s = std::sin(q(i) + row.theta_rad);
-    const double ca = std::cos(row.alpha_rad), sa = std::sin(row.alpha_rad);
+    const double ca = cos_alpha_[k], sa = sin_alpha_[k];
     const Eigen::Vector3d x = c * R.col(0) + s * R.col(1);  // after Rz
     const Eigen::Vector3d y = c * R.col(1) - s * R.col(0);
     const Eigen::Vector3d z = R.col(2);
@@ -208,7 +211,7 @@ RobotModel::Chain RobotModel::ComputeChain(const Eigen::VectorXd& q) const {
     R.col(0) = x;
     R.col(1) = ca * y + sa * z;
     R.col(2) = ca * z - sa * y;
-    chain.R_WL[static_cast<std::size_t>(i)] = R;
+    chain.R_WL[k] = R;
     chain.p_WL.col(i) = p;
   }
   return chain;

@@ -94,6 +94,7 @@ class RobotModel {
   Pose X_WB_;
   std::vector<std::string> joint_names_;
   std::vector<DhRow> dh_;
+  std::vector<double> cos_alpha_, sin_alpha_;  // of dh_: half of all trigonometry
   std::vector<JointLimits> limits_;
   std::vector<CollisionSphere> spheres_;
   Eigen::VectorXd radii_m_;
