@@ -212,7 +212,7 @@ const std::map<std::string, std::map<std::string, double>> kSticksOut_mm = {{"pa
                                                                               {"link2", 93},
                                                                               {"link3", 6},
                                                                               {"link4", 12},
-                                                                              {"link5", 32},
+                                                                              {"link5", 22},
                                                                               {"link6", 17},
                                                                               {"link7", 15},
                                                                               {"hand", 22},
