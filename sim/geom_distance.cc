@@ -85,30 +85,7 @@ double PlaneDistance(const mjModel& model, const mjData& data, int plane, int ge
   return std::max(0.0, height - ReachAgainst(model, data, geom, normal_W));
 }
 
-struct Prism {
-  ConvexSolid solid;
-  Eigen::Vector3d lower_m, upper_m;  // the box around it, in the height field's frame
-};
-
-std::vector<Prism> MakePrisms(const mjModel& model, int hfield) {
-  std::vector<Prism> prisms;
-  for (const ConvexHull& hull : HeightField(model, hfield).Prisms()) {
-    Prism prism{FromHull(hull), hull.vertices[0], hull.vertices[0]};
-    for (const Eigen::Vector3d& vertex : hull.vertices) {
-      prism.lower_m = prism.lower_m.cwiseMin(vertex);
-      prism.upper_m = prism.upper_m.cwiseMax(vertex);
-    }
-    prisms.push_back(std::move(prism));
-  }
-  return prisms;
-}
-
 }  // namespace
-
-struct GeomDistance::Solids {
-  std::vector<std::optional<ConvexSolid>> convex;  ///< one a geom; none: a plane, a height field
-  std::vector<std::vector<Prism>> prisms;          ///< one list a geom, filled for height fields
-};
 
 std::optional<Touch> FindTouch(const mjModel& model, const mjData& data, int geom1, int geom2) {
   if (model.geom_type[geom1] > model.geom_type[geom2]) std::swap(geom1, geom2);
@@ -125,22 +102,32 @@ std::optional<Touch> FindTouch(const mjModel& model, const mjData& data, int geo
   return deepest;
 }
 
-GeomDistance::GeomDistance(const mjModel& model) : model_(model) {
-  auto solids = std::make_unique<Solids>();
-  solids->convex.resize(static_cast<std::size_t>(model.ngeom));
-  solids->prisms.resize(static_cast<std::size_t>(model.ngeom));
+std::vector<GeomDistance::Prism> GeomDistance::MakePrisms(const mjModel& model, int hfield) {
+  std::vector<Prism> prisms;
+  for (const ConvexHull& hull : HeightField(model, hfield).Prisms()) {
+    Prism prism{FromHull(hull), hull.vertices[0], hull.vertices[0]};
+    for (const Eigen::Vector3d& vertex : hull.vertices) {
+      prism.lower_m = prism.lower_m.cwiseMin(vertex);
+      prism.upper_m = prism.upper_m.cwiseMax(vertex);
+    }
+    prisms.push_back(std::move(prism));
+  }
+  return prisms;
+}
+
+GeomDistance::GeomDistance(const mjModel& model)
+    : model_(model),
+      convex_(static_cast<std::size_t>(model.ngeom)),
+      prisms_(static_cast<std::size_t>(model.ngeom)) {
   for (int i = 0; i < model.ngeom; ++i) {
     if (model.geom_contype[i] == 0 && model.geom_conaffinity[i] == 0) continue;  // a picture
     const auto index = static_cast<std::size_t>(i);
-    solids->convex[index] = FromGeom(model, i);
+    convex_[index] = FromGeom(model, i);
     if (model.geom_type[i] == mjGEOM_HFIELD) {
-      solids->prisms[index] = MakePrisms(model, model.geom_dataid[i]);
+      prisms_[index] = MakePrisms(model, model.geom_dataid[i]);
     }
   }
-  solids_ = std::move(solids);
 }
-
-GeomDistance::~GeomDistance() = default;
 
 double GeomDistance::LowerBound(const mjData& data, int geom1, int geom2) const {
   const double radius1 = model_.geom_rbound[geom1], radius2 = model_.geom_rbound[geom2];
@@ -150,19 +137,19 @@ double GeomDistance::LowerBound(const mjData& data, int geom1, int geom2) const 
 }
 
 double GeomDistance::Distance(const mjData& data, int geom1, int geom2) const {
-  if (!solids_->convex[static_cast<std::size_t>(geom1)]) std::swap(geom1, geom2);
-  const std::optional<ConvexSolid>& convex1 = solids_->convex[static_cast<std::size_t>(geom1)];
+  if (!convex_[static_cast<std::size_t>(geom1)]) std::swap(geom1, geom2);
+  const std::optional<ConvexSolid>& convex1 = convex_[static_cast<std::size_t>(geom1)];
   if (!convex1) throw std::invalid_argument("GeomDistance: one of two geoms must be convex");
   if (model_.geom_type[geom2] == mjGEOM_PLANE) {
     return PlaneDistance(model_, data, geom2, geom1);
   }
   const Eigen::Isometry3d X_21 = GeomFrame(data, geom2).inverse() * GeomFrame(data, geom1);
-  const std::optional<ConvexSolid>& convex2 = solids_->convex[static_cast<std::size_t>(geom2)];
+  const std::optional<ConvexSolid>& convex2 = convex_[static_cast<std::size_t>(geom2)];
   if (convex2) return ConvexDistance(*convex2, *convex1, X_21);
 
   const Eigen::Vector3d centre = X_21.translation();
   double least = std::numeric_limits<double>::infinity();
-  for (const Prism& prism : solids_->prisms[static_cast<std::size_t>(geom2)]) {
+  for (const Prism& prism : prisms_[static_cast<std::size_t>(geom2)]) {
     const Eigen::Vector3d nearest = centre.cwiseMax(prism.lower_m).cwiseMin(prism.upper_m);
     if ((nearest - centre).norm() - model_.geom_rbound[geom1] >= least) continue;
     least = std::min(least, ConvexDistance(prism.solid, *convex1, X_21));

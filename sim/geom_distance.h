@@ -3,8 +3,10 @@
 #include <mujoco/mujoco.h>
 
 #include <Eigen/Core>
-#include <memory>
 #include <optional>
+#include <vector>
+
+#include "sim/convex_distance.h"
 
 namespace sidestep {
 
@@ -27,7 +29,6 @@ class GeomDistance {
  public:
   /// @param model must outlive this.
   explicit GeomDistance(const mjModel& model);
-  ~GeomDistance();
 
   /// The least distance between two solids at the poses in `data` [m]; 0 if they overlap.
   /// @throws std::invalid_argument if neither of the two is a bounded convex solid.
@@ -37,9 +38,16 @@ class GeomDistance {
   double LowerBound(const mjData& data, int geom1, int geom2) const;
 
  private:
-  struct Solids;
+  /// What is under one triangle of a height field.
+  struct Prism {
+    ConvexSolid solid;
+    Eigen::Vector3d lower_m, upper_m;  ///< the box around it, in the height field's frame
+  };
+  static std::vector<Prism> MakePrisms(const mjModel& model, int hfield);
+
   const mjModel& model_;
-  std::unique_ptr<const Solids> solids_;
+  std::vector<std::optional<ConvexSolid>> convex_;  ///< one a geom; none: a plane, a height field
+  std::vector<std::vector<Prism>> prisms_;          ///< one list a geom, filled for height fields
 };
 
 }  // namespace sidestep

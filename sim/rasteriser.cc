@@ -81,6 +81,26 @@ Rasteriser::Rasteriser(const mjModel& model) : model_(model) {
   for (int i = 0; i < model.ngeom; ++i) solids_.push_back(MakeSolid(model, i));
 }
 
+std::vector<Rasteriser::HalfSpace> Rasteriser::FacesOf(const ConvexHull& hull) {
+  std::vector<HalfSpace> faces;
+  for (const std::array<int, 3>& face : hull.faces) {
+    const auto vertex = [&](std::size_t i) {
+      return hull.vertices[static_cast<std::size_t>(face[i])];
+    };
+    const Eigen::Vector3d across = (vertex(1) - vertex(0)).cross(vertex(2) - vertex(0));
+    if (!(across.norm() > 0)) continue;
+    const Eigen::Vector3d normal = across.normalized();
+    const double offset = normal.dot(vertex(0));
+    // The vertices are of single precision, so the plane of a sliver may be askew and cut into the
+    // hull; its neighbours bound the same flat face better.
+    const bool supports =
+        std::all_of(hull.vertices.begin(), hull.vertices.end(),
+                    [&](const auto& v) { return normal.dot(v) <= offset + kOnCoarse; });
+    if (supports) faces.push_back({normal, offset});
+  }
+  return faces;
+}
+
 Rasteriser::Solid Rasteriser::MakeSolid(const mjModel& model, int geom) {
   Solid solid;
   const Eigen::Map<const Eigen::Vector3d> size(model.geom_size + 3 * geom);
@@ -117,21 +137,7 @@ Rasteriser::Solid Rasteriser::MakeSolid(const mjModel& model, int geom) {
         solid.lower_m = solid.lower_m.cwiseMin(vertex);
         solid.upper_m = solid.upper_m.cwiseMax(vertex);
       }
-      for (const std::array<int, 3>& face : hull.faces) {
-        const auto vertex = [&](std::size_t i) {
-          return hull.vertices[static_cast<std::size_t>(face[i])];
-        };
-        const Eigen::Vector3d across = (vertex(1) - vertex(0)).cross(vertex(2) - vertex(0));
-        if (!(across.norm() > 0)) continue;
-        const Eigen::Vector3d normal = across.normalized();
-        // The vertices are of single precision, so the plane of a sliver may be askew and cut into
-        // the hull; its neighbours bound the same flat face better.
-        const double offset = normal.dot(vertex(0));
-        const bool supports =
-            std::all_of(hull.vertices.begin(), hull.vertices.end(),
-                        [&](const auto& v) { return normal.dot(v) <= offset + kOnCoarse; });
-        if (supports) solid.faces.push_back({normal, offset});
-      }
+      solid.faces = FacesOf(hull);
       break;
     }
     default:  // box, ellipsoid

@@ -47,6 +47,7 @@ class Rasteriser {
     Eigen::Vector3d lower_m, upper_m;  ///< the box around it, in the geom's frame
     std::optional<HeightField> height_field;
   };
+  static std::vector<HalfSpace> FacesOf(const ConvexHull& hull);
   static Solid MakeSolid(const mjModel& model, int geom);
 
   const mjModel& model_;

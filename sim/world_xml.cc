@@ -136,11 +136,10 @@ void MergeRobot(const Scenario& scenario, const std::string& path, XMLElement* w
     } else if (name == "asset" || name == "contact" || name == "equality" || name == "tendon" ||
                name == "actuator" || name == "sensor") {
       XMLElement* to = section(name.c_str());
-      const XMLElement* last_before = to->LastChildElement();
+      XMLElement* last_before = to->LastChildElement();
       CopyChildren(*from, to);
-      XMLElement* child = last_before != nullptr
-                              ? const_cast<XMLElement*>(last_before)->NextSiblingElement()
-                              : to->FirstChildElement();
+      XMLElement* child =
+          last_before != nullptr ? last_before->NextSiblingElement() : to->FirstChildElement();
       for (; child != nullptr; child = child->NextSiblingElement()) {
         if (robot.FirstChildElement("default") != nullptr && TakesClass(name, child->Name()) &&
             child->Attribute("class") == nullptr) {

@@ -190,47 +190,79 @@ TEST_P(EveryPair, IsAsFarApartAsTheClosedFormSays) {
 INSTANTIATE_TEST_SUITE_P(GeomDistance, EveryPair, testing::ValuesIn(kCases),
                          [](const auto& test) { return test.param.name; });
 
-struct BoxCase {
+// Pairs whose nearest features are parallel, or meet at right angles: the general algorithms'
+// stumbling blocks.
+struct AlignedCase {
   const char* name;
-  Vector3d rpy1_rad, p_W1, rpy2_rad, p_W2;
+  const char *geom1, *geom2;
+  Vector3d rpy1_rad, rpy2_rad, p_12;  ///< the first is at the origin
   double distance_m;
 };
-void PrintTo(const BoxCase& c, std::ostream* out) { *out << c.name; }
+void PrintTo(const AlignedCase& c, std::ostream* out) { *out << c.name; }
 
-constexpr double kQuarter = 3.14159265358979323846 / 4;
+constexpr double kEighth = 3.14159265358979323846 / 4;  // of a turn
+const char* const kCube = "type='box' size='0.1 0.1 0.1'";
 
-// Two cubes with edges of 0.2 m.
-const BoxCase kBoxCases[] = {
-    {"FaceToFace", {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0.5, 0.05, -0.03}, 0.3},
-    {"EdgeToEdgeParallel", {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0.5, 0.6, 0}, 0.5},
-    {"CornerToCorner", {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0.4, 0.4, 0.4}, 0.2 * std::sqrt(3.0)},
-    {"EdgeToFace", {0, 0, kQuarter}, {0, 0, 0}, {0, 0, 0}, {0.5, 0, 0}, 0.4 - 0.1 * std::sqrt(2.0)},
-    // Edges along y and along z that cross at a right angle on the x axis.
-    {"EdgeAcrossEdge",
-     {0, kQuarter, 0},
+const AlignedCase kAlignedCases[] = {
+    {"FaceToFace", kCube, kCube, {0, 0, 0}, {0, 0, 0}, {0.5, 0.05, -0.03}, 0.3},
+    {"FaceToSameFace", kCube, kCube, {0, 0, 0}, {0, 0, 0}, {0.5, 0, 0}, 0.3},
+    {"ParallelEdges", kCube, kCube, {0, 0, 0}, {0, 0, 0}, {0.5, 0.6, 0}, 0.5},
+    {"CornerToCorner", kCube, kCube, {0, 0, 0}, {0, 0, 0}, {0.4, 0.4, 0.4}, 0.2 * std::sqrt(3.0)},
+    {"EdgeToFace",
+     kCube,
+     kCube,
+     {0, 0, kEighth},
      {0, 0, 0},
-     {0, 0, kQuarter},
+     {0.5, 0, 0},
+     0.4 - 0.1 * std::sqrt(2.0)},
+    {"EdgeAcrossEdge",
+     kCube,
+     kCube,
+     {0, kEighth, 0},
+     {0, 0, kEighth},
      {0.6, 0, 0},
      0.6 - 0.2 * std::sqrt(2.0)},
-    {"Overlapping", {0, 0, 0}, {0, 0, 0}, {0, 0, 0.3}, {0.15, 0, 0}, 0},
+    {"Overlapping", kCube, kCube, {0, 0, 0}, {0, 0, 0.3}, {0.15, 0, 0}, 0},
+    {"Same", kCube, kCube, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0},
+    {"CylinderAlongFace", kBoxGeom, kCylinderGeom, {0, 0, 0}, {0, 0, 0}, {0.5, 0, 0}, 0.3},
+    {"CylinderOnTop", kBoxGeom, kCylinderGeom, {0, 0, 0}, {0, 0, 0}, {0, 0, 0.9}, 0.3},
+    {"CylindersSideBySide", kCylinderGeom, kCylinderGeom, {0, 0, 0}, {0, 0, 0}, {0.5, 0, 0.1}, 0.3},
+    {"CylindersInLine", kCylinderGeom, kCylinderGeom, {0, 0, 0}, {0, 0, 0}, {0, 0, 1}, 0.4},
+    {"CylindersCrossed",
+     kCylinderGeom,
+     kCylinderGeom,
+     {0, 0, 0},
+     {2 * kEighth, 0, 0},
+     {0.5, 0, 0},
+     0.3},
+    {"EllipsoidsInLine", kEllipsoidGeom, kEllipsoidGeom, {0, 0, 0}, {0, 0, 0}, {0.5, 0, 0}, 0.3},
+    {"CapsulesSideBySide", kCapsuleGeom, kCapsuleGeom, {0, 0, 0}, {0, 0, 0}, {0.5, 0, 0}, 0.3},
+    {"CapsulesCrossed",
+     kCapsuleGeom,
+     kCapsuleGeom,
+     {0, 0, 0},
+     {2 * kEighth, 0, 0},
+     {0.5, 0, 0},
+     0.3},
 };
 
-class TwoBoxes : public testing::TestWithParam<BoxCase> {};
+class AlignedPair : public testing::TestWithParam<AlignedCase> {};
 
-TEST_P(TwoBoxes, AreAsFarApartAsTheirNearestFeatures) {
-  const BoxCase& c = GetParam();
-  SmallModel m = TwoGeoms("type='box' size='0.1 0.1 0.1'", "type='box' size='0.1 0.1 0.1'");
+TEST_P(AlignedPair, IsAsFarApartAsItsNearestFeatures) {
+  const AlignedCase& c = GetParam();
+  SmallModel m = TwoGeoms(c.geom1, c.geom2);
   const GeomDistance distance(*m.model);
   std::mt19937 generator(3);
   for (int trial = 0; trial < 20; ++trial) {  // the same pair, seen from elsewhere
     const Pose X_WA = trial == 0 ? Pose() : RandomPose(0.5, &generator);
-    m.Place(0, X_WA * Pose::FromRollPitchYaw(c.rpy1_rad, c.p_W1));
-    m.Place(1, X_WA * Pose::FromRollPitchYaw(c.rpy2_rad, c.p_W2));
+    m.Place(0, X_WA * Pose::FromRollPitchYaw(c.rpy1_rad, {0, 0, 0}));
+    m.Place(1, X_WA * Pose::FromRollPitchYaw(c.rpy2_rad, c.p_12));
     EXPECT_NEAR(distance.Distance(*m.data, 0, 1), c.distance_m, kTolerance_m);
+    EXPECT_NEAR(distance.Distance(*m.data, 1, 0), c.distance_m, kTolerance_m);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(GeomDistance, TwoBoxes, testing::ValuesIn(kBoxCases),
+INSTANTIATE_TEST_SUITE_P(GeomDistance, AlignedPair, testing::ValuesIn(kAlignedCases),
                          [](const auto& test) { return test.param.name; });
 
 TEST(GeomDistance, TakesAMeshForItsConvexHull) {
