@@ -85,24 +85,27 @@ class LineTransform {
 
   template <std::ptrdiff_t stride>
   void Run(const std::uint8_t* filled, std::int32_t* squares, int length) {
+    // The distance along one axis from a centre to another cell's cube is that to its nearer face,
+    // and zero within the same cell. So in the surface convention the faces between cells are the
+    // sites, each as low as the lower of the two cells it parts, and a cell's own square (the final
+    // min) stands for the zero. Otherwise the centres are the sites.
+    const bool from_faces = convention_ == DistanceConvention::kSurface;
+    const int to_site = from_faces ? 1 : 2;  // from an end of a run to the nearest site beyond
     for (int first = 0; first < length;) {
-      int last = first;
       const bool kind = filled[first * stride] != 0;
+      int last = first;
       while (last + 1 < length && (filled[(last + 1) * stride] != 0) == kind) ++last;
+
       envelope_.Begin(first, last);
-      // The distance along one axis from a centre to another cell's cube is that to its nearer
-      // face, and zero within the same cell. So in the surface convention the faces are the sites,
-      // each as low as the lower of the two cells it parts, and a cell's own square (the final min)
-      // stands for the zero.
-      const bool faces = convention_ == DistanceConvention::kSurface;
-      const int beyond = faces ? 1 : 2;
-      if (first > 0) envelope_.Add(2 * first - beyond, 0);
-      for (int i = first; i < last + (faces ? 0 : 1); ++i) {
-        const std::int32_t height =
-            faces ? std::min(squares[i * stride], squares[(i + 1) * stride]) : squares[i * stride];
-        if (height != kNoOtherCell) envelope_.Add(2 * i + (faces ? 1 : 0), height);
+      if (first > 0) envelope_.Add(2 * first - to_site, 0);
+      if (from_faces) {
+        for (int i = first; i < last; ++i) {
+          AddIfKnown(2 * i + 1, std::min(squares[i * stride], squares[(i + 1) * stride]));
+        }
+      } else {
+        for (int i = first; i <= last; ++i) AddIfKnown(2 * i, squares[i * stride]);
       }
-      if (last + 1 < length) envelope_.Add(2 * last + beyond, 0);
+      if (last + 1 < length) envelope_.Add(2 * last + to_site, 0);
       envelope_.ForEachCell([&](int i, std::int32_t value) {
         squares[i * stride] = std::min(squares[i * stride], value);
       });
@@ -111,6 +114,10 @@ class LineTransform {
   }
 
  private:
+  void AddIfKnown(std::int32_t position, std::int32_t height) {
+    if (height != kNoOtherCell) envelope_.Add(position, height);
+  }
+
   DistanceConvention convention_;
   LowerEnvelope envelope_;
 };
