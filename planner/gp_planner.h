@@ -10,9 +10,9 @@ namespace sidestep {
 ///
 /// A cold start is solved in two stages, first without joint limits and then with them from there:
 /// stiff limits from the beginning keep the solver on the wrong side of obstacles. A warm start is
-/// solved with limits at once. A plan is judged by its clearance, not by its cost; if it is not
-/// free within the limits, direct motions with other timings are tried as seeds, and the best
-/// counts.
+/// solved with limits at once. A plan is judged by its clearance, not by its cost. If a cold one is
+/// not free within the limits, or a warm one not free, direct motions with other timings are tried
+/// as seeds until one is, and the best counts.
 ///
 /// Source: Mukadam et al., "Continuous-time Gaussian process motion planning via probabilistic
 /// inference", IJRR 37(11):1319-1340, 2018.

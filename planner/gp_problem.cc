@@ -16,6 +16,9 @@
 namespace sidestep {
 namespace {
 
+// Soft costs give way a little: they begin this far inside the robot's position limits.
+constexpr double kPositionMargin_rad = 0.02;
+
 // This class owns the cost functions, so that intervals may share one.
 ceres::Problem::Options ProblemOptions() {
   ceres::Problem::Options options;
@@ -31,6 +34,8 @@ GpProblem::GpProblem(const RobotModel& robot, const PlanRequest& request, const 
     : robot_(robot),
       t_s_(initial.t_s),
       step_s_(request.step_s),
+      q_start_(request.q_start),
+      q_goal_(request.q_goal),
       first_free_(options.sigma_fixed ? 0 : request.num_fixed),
       states_(2 * robot.num_joints(), request.num_states),
       hinge_(robot, *request.field, options.epsilon_m, options.sigma_obs),
@@ -79,8 +84,8 @@ void GpProblem::AddLimits(const LimitWeights& weights, double scale) {
   Eigen::VectorXd lower(2 * n), upper(2 * n), weight(2 * n), a_max(n);
   for (int i = 0; i < n; ++i) {
     const JointLimits& limits = robot_.limits()[i];
-    lower(i) = limits.q_min;
-    upper(i) = limits.q_max;
+    lower(i) = std::min({limits.q_min + kPositionMargin_rad, q_start_(i), q_goal_(i)});
+    upper(i) = std::max({limits.q_max - kPositionMargin_rad, q_start_(i), q_goal_(i)});
     upper(n + i) = scale * limits.v_max;
     lower(n + i) = -upper(n + i);
     a_max(i) = scale * limits.a_max;

@@ -45,8 +45,8 @@ class GpProblem {
   GpProblem(const RobotModel& robot, const PlanRequest& request, const Trajectory& initial,
             const GpProblemOptions& options);
 
-  /// Adds costs that keep every free state and interval within the robot's position limits and
-  /// within `scale` of its velocity and acceleration limits.
+  /// Adds costs that keep every free state and interval within `scale` of the robot's velocity and
+  /// acceleration limits, and 0.02 rad within its position limits unless start or goal lie closer.
   void AddLimits(const LimitWeights& weights, double scale);
 
   /// For a solver. The parameter blocks are the columns of states(); blocks of fixed states that
@@ -72,6 +72,7 @@ class GpProblem {
   const RobotModel& robot_;
   Eigen::VectorXd t_s_;
   double step_s_;
+  Eigen::VectorXd q_start_, q_goal_;
   int first_free_;  // the first state that is not a constant
   Eigen::MatrixXd states_;
   ObstacleHinge hinge_;
