@@ -171,7 +171,9 @@ void Comparison::DrawPanel(Image& image, Panel& panel, EpisodeTime t) const {
   const EpisodeTime own_end = EndOf(recording);
   const bool finished = t > own_end;
   const EpisodeTime own_t = std::min(t, own_end);
-  image.Paste(panel.painter.Draw(own_t), panel.scene.x, panel.scene.y);
+  if (finished && !panel.last_picture) panel.last_picture = panel.painter.Draw(own_t);
+  image.Paste(finished ? *panel.last_picture : panel.painter.Draw(own_t), panel.scene.x,
+              panel.scene.y);
 
   const PixelRect& place = panel.place;
   const double inset = kTextInset * scale_;
@@ -224,7 +226,7 @@ void Comparison::DrawSummary(Image& image, const PixelRect& place, EpisodeTime t
 Image Comparison::Draw(EpisodeTime t) {
   Image image(width_, height_);
   image.Fill({0, 0, width_, height_}, kBackground);
-  DrawHeader(image, t);
+  DrawHeader(image, std::min(t, end()));
   DrawLegend(image);
   for (Panel& panel : panels_) DrawPanel(image, panel, t);
   if (!empty_places_.empty()) DrawSummary(image, empty_places_.front(), t);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <list>
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,7 +56,8 @@ class Comparison {
     TraceModel model;
     ScenePainter painter;
     Title title;
-    PixelRect place, scene;  // of the picture; `scene` lies inside `place`
+    PixelRect place, scene;             // of the picture; `scene` lies inside `place`
+    std::optional<Image> last_picture;  // its last picture, once drawn: it stays
   };
 
   void ChooseViews(const PictureOptions& options);

@@ -27,11 +27,16 @@ void Image::Blend(int x, int y, Color color, double opacity) {
   pixel[2] = mix(pixel[2], color.b);
 }
 
-void Image::Fill(const PixelRect& rect, Color color, double opacity) {
+void Image::Fill(const PixelRect& rect, Color color) {
   const int right = std::min(rect.x + rect.width, width_);
   const int bottom = std::min(rect.y + rect.height, height_);
   for (int y = std::max(rect.y, 0); y < bottom; ++y) {
-    for (int x = std::max(rect.x, 0); x < right; ++x) Blend(x, y, color, opacity);
+    for (int x = std::max(rect.x, 0); x < right; ++x) {
+      std::uint8_t* const pixel = row(y) + 3 * x;
+      pixel[0] = color.r;
+      pixel[1] = color.g;
+      pixel[2] = color.b;
+    }
   }
 }
 

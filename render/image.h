@@ -30,8 +30,8 @@ class Image {
 
   /// Mixes `color` into one pixel: opacity 0 leaves it, 1 replaces it. Outside: nothing happens.
   void Blend(int x, int y, Color color, double opacity);
-  /// The same for a rectangle, cut off at the image's edges.
-  void Fill(const PixelRect& rect, Color color, double opacity = 1);
+  /// Paints a rectangle, cut off at the image's edges.
+  void Fill(const PixelRect& rect, Color color);
   /// The rectangle's rim, `thickness` pixels wide, inside it.
   void Outline(const PixelRect& rect, Color color, int thickness);
   /// Copies `other` so that its upper left corner is at (x, y), cut off at the edges.

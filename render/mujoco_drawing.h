@@ -15,6 +15,9 @@ class DrawingContext {
   DrawingContext(const DrawingContext&) = delete;
   DrawingContext& operator=(const DrawingContext&) = delete;
 
+  /// Half the width of the square that a directional light's shadow map covers [m].
+  void SetShadowRadius(double radius_m) { context_.shadowClip = static_cast<float>(radius_m); }
+
   mjrRect viewport() const { return {0, 0, context_.offWidth, context_.offHeight}; }
 
   /// Draws a scene into the buffer, over all of it. The buffer stays bound for what OpenGL may add.

@@ -13,6 +13,7 @@ namespace {
 constexpr int kMaxGeoms = 2000;
 constexpr double kFieldOfView_deg = 32;  // upright; narrow enough to keep shapes true
 constexpr double kPathWidth = 0.011;     // of the picture's height
+constexpr double kShadowMargin = 1.2;
 constexpr HorizonOffset kTouchShown(0.25);
 constexpr double kTouchRadius_m = 0.045;
 
@@ -25,6 +26,20 @@ mjModel& Prepare(mjModel& model, int width, int height) {
   model.vis.quality.offsamples = 4;
   model.vis.quality.shadowsize = 2048;
   return model;
+}
+
+// The path without points that are too near to the one before; pieces of a line that are shorter
+// than it is wide look like a comb. The last point stays.
+Eigen::Matrix3Xd Thinned(const Eigen::Matrix3Xd& path) {
+  constexpr double kApart_m = 0.015;
+  Eigen::Matrix3Xd thinned(3, path.cols());
+  Eigen::Index count = 0;
+  for (Eigen::Index i = 0; i < path.cols(); ++i) {
+    const bool is_last = i + 1 == path.cols();
+    if (count > 0 && !is_last && (path.col(i) - thinned.col(count - 1)).norm() < kApart_m) continue;
+    thinned.col(count++) = path.col(i);
+  }
+  return thinned.leftCols(count);
 }
 
 }  // namespace
@@ -52,6 +67,10 @@ void ScenePainter::LookFrom(const CameraView& view) {
   camera_.distance = view.distance_m;
   camera_.azimuth = view.azimuth_rad * kDegrees;
   camera_.elevation = view.elevation_rad * kDegrees;
+  shadow_center_m_ = view.lookat_m;
+  shadow_radius_m_ = kShadowMargin * view.distance_m *
+                     FullFrustum(drawing_.viewport().width, drawing_.viewport().height).right;
+  drawing_.SetShadowRadius(shadow_radius_m_);
 }
 
 void ScenePainter::LookThrough(const std::string& camera) {
@@ -102,7 +121,22 @@ void ScenePainter::DrawPredictions(Overlay& overlay, const CycleRecord& cycle, E
       const Pose X_WO = PoseAt(object.t, object.X_WO, moment);
       if (previous && (X_WO.translation() - *previous).norm() < kApart_m) continue;
       previous = X_WO.translation();
-      overlay.DrawBox(X_WO, object.half_extents_m, kPredictionColor, opacity / 2, 2.5 * opacity);
+      overlay.DrawBox(X_WO, object.half_extents_m, kPredictionColor, opacity / 3, 3 * opacity);
+    }
+  }
+}
+
+// A directional light lights the same from anywhere, but MuJoCo's shadow map is a square around its
+// axis. Moved over what is seen, and no larger than that, the map gives sharp shadows.
+void ScenePainter::AimShadows() {
+  if (shadow_radius_m_ == 0) return;
+  mjvScene& scene = scene_.get();
+  for (int i = 0; i < scene.nlight; ++i) {
+    mjvLight& light = scene.lights[i];
+    if (!light.directional || !light.castshadow) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      light.pos[axis] =
+          static_cast<float>(shadow_center_m_[axis] - 2 * shadow_radius_m_ * light.dir[axis]);
     }
   }
 }
@@ -131,14 +165,16 @@ Image ScenePainter::Draw(EpisodeTime t) {
   mjv_updateScene(&trace_.model(), &trace_.data(), &option, nullptr, &camera_, mjCAT_ALL,
                   &scene_.get());
   if (touch) TintTouched(*touch);
+  AimShadows();
   drawing_.Render(scene_.get());
   {
     Overlay overlay(scene_.get(), drawing_.viewport());
-    const double line = std::max(1.5, kPathWidth * drawing_.viewport().height);
-    overlay.DrawPath(trace_.TipTrail(t), kTrailColor, line);
-    overlay.DrawPath(plan, kPlanColor, line);
+    const mjrRect picture = drawing_.viewport();
+    const double line = std::max(1.5, kPathWidth * std::sqrt(picture.width * picture.height));
     DrawContactBoxes(overlay);
     if (cycle != nullptr) DrawPredictions(overlay, *cycle, t);
+    overlay.DrawPath(Thinned(trace_.TipTrail(t)), kTrailColor, line);
+    overlay.DrawPath(Thinned(plan), kPlanColor, line);
     if (touch) overlay.DrawSpot(touch->p_W, kTouchRadius_m, kContactColor);
   }
   return drawing_.Read();

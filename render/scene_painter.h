@@ -36,6 +36,7 @@ class ScenePainter {
   Image Draw(EpisodeTime t);
 
  private:
+  void AimShadows();
   void TintTouched(const Touch& touch);
   void DrawContactBoxes(Overlay& overlay) const;
   static void DrawPredictions(Overlay& overlay, const CycleRecord& cycle, EpisodeTime t);
@@ -44,6 +45,8 @@ class ScenePainter {
   Scene scene_;
   DrawingContext drawing_;
   mjvCamera camera_;
+  Eigen::Vector3d shadow_center_m_ = Eigen::Vector3d::Zero();
+  double shadow_radius_m_ = 0;  // zero: leave the lights where the model has them
 };
 
 }  // namespace sidestep

@@ -26,6 +26,7 @@ TraceModel::TraceModel(const Recording& recording, const std::string& name)
     : recording_(recording), name_(name) {
   if (recording.control.empty()) throw InputError(name, "holds no motion, so nothing to draw");
   if (recording.joints.empty()) throw InputError(name, "names no joints, so nothing to draw");
+  if (recording.model_xml.empty()) throw InputError(name, "holds no model, so nothing to draw");
   model_ = LoadMujocoModel(recording.model_xml, name + ": model_xml");
   data_ = MakeMujocoData(*model_);
   int last_joint = 0;

@@ -7,15 +7,17 @@
 #include <numbers>
 
 #include "render/timeline.h"
+#include "sim/mujoco_pose.h"
 
 namespace sidestep {
 namespace {
 
 constexpr double kStep_s = 0.25;
 constexpr double kWatched_s = 3;
-constexpr double kAfterPassing_s = 0.4;
-constexpr double kElevation_rad = -0.5;
+constexpr double kBeforePassing_s = 1, kAfterPassing_s = 0.4;
+constexpr double kElevation_rad = -0.6;
 constexpr int kNumDirections = 24;
+constexpr double kWeightVisibility = 2, kWeightPath = 1.5, kWeightSize = 0.5, kWeightAcross = 0.1;
 
 using Points = std::vector<Eigen::Vector3d>;
 
@@ -41,33 +43,36 @@ Eigen::Vector3d HalfExtents(const mjModel& model, int geom) {
 
 void AppendCorners(const TraceModel& trace, int geom, Points* points) {
   const Eigen::Vector3d half = HalfExtents(trace.model(), geom);
-  const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R_WG(trace.data().geom_xmat +
-                                                                            9 * geom);
-  const Eigen::Map<const Eigen::Vector3d> p_WG(trace.data().geom_xpos + 3 * geom);
+  const Pose X_WG = GeomPose(trace.data(), geom);
   for (int corner = 0; corner < 8; ++corner) {
     const Eigen::Vector3d sign((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1,
                                (corner & 4) != 0 ? 1 : -1);
-    points->push_back(p_WG + R_WG * sign.cwiseProduct(half));
+    points->push_back(X_WG * sign.cwiseProduct(half));
   }
 }
 
 bool IsPlane(const mjModel& model, int geom) { return model.geom_type[geom] == mjGEOM_PLANE; }
 
-// Until when each obstacle is watched: a little after it is nearest to the robot's base.
-std::vector<EpisodeTime> EndsOfApproach(const TraceModel& trace, const Eigen::Vector3d& p_WBase) {
-  std::vector<EpisodeTime> ends(trace.recording().obstacles.size());
-  std::vector<double> nearest_m(ends.size(), std::numeric_limits<double>::infinity());
+struct Interval {
+  EpisodeTime begin, end;
+  bool Contains(EpisodeTime t) const { return begin <= t && t <= end; }
+};
+
+// When each obstacle passes the robot: around the moment when it is nearest to it.
+std::vector<Interval> TimesOfPassing(const TraceModel& trace, const Eigen::Vector3d& p_WRobot) {
+  std::vector<Interval> passing(trace.recording().obstacles.size());
+  std::vector<double> nearest_m(passing.size(), std::numeric_limits<double>::infinity());
   const double end_s = std::min(kWatched_s, EndOf(trace.recording()).seconds());
   for (double t_s = 0; t_s <= end_s; t_s += kStep_s / 5) {
     const std::vector<Pose> poses = ObstaclesAt(trace.recording(), EpisodeTime(t_s));
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      const double distance_m = (poses[i].translation() - p_WBase).norm();
+      const double distance_m = (poses[i].translation() - p_WRobot).norm();
       if (distance_m >= nearest_m[i]) continue;
       nearest_m[i] = distance_m;
-      ends[i] = EpisodeTime(std::min(end_s, t_s + kAfterPassing_s));
+      passing[i] = {EpisodeTime(t_s - kBeforePassing_s), EpisodeTime(t_s + kAfterPassing_s)};
     }
   }
-  return ends;
+  return passing;
 }
 
 struct Moment {
@@ -87,12 +92,12 @@ std::vector<Moment> Moments(const std::vector<TraceModel*>& traces) {
   return moments;
 }
 
-Eigen::Vector3d BasePosition(const TraceModel& trace) {
+Eigen::Vector3d RobotPosition(const TraceModel& trace) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   int count = 0;
   for (int geom = 0; geom < trace.model().ngeom; ++geom) {
     if (!trace.IsRobot(geom)) continue;
-    sum += Eigen::Map<const Eigen::Vector3d>(trace.data().geom_xpos + 3 * geom);
+    sum += GeomPosition(trace.data(), geom);
     ++count;
   }
   return count == 0 ? sum : Eigen::Vector3d(sum / count);
@@ -102,13 +107,15 @@ Eigen::Matrix3Xd PointsToShow(const std::vector<TraceModel*>& traces) {
   Points points;
   for (TraceModel* const trace : traces) {
     trace->MoveTo(EpisodeTime(0));
-    const std::vector<EpisodeTime> ends = EndsOfApproach(*trace, BasePosition(*trace));
+    const std::vector<Interval> passing = TimesOfPassing(*trace, RobotPosition(*trace));
     for (const Moment& moment : Moments({trace})) {
       trace->MoveTo(moment.t);
       for (int geom = 0; geom < trace->model().ngeom; ++geom) {
         if (IsPlane(trace->model(), geom)) continue;
         const int obstacle = trace->ObstacleOf(geom);
-        if (obstacle >= 0 && moment.t > ends[static_cast<std::size_t>(obstacle)]) continue;
+        if (obstacle >= 0 && !passing[static_cast<std::size_t>(obstacle)].Contains(moment.t)) {
+          continue;
+        }
         AppendCorners(*trace, geom, &points);
       }
     }
@@ -120,32 +127,72 @@ Eigen::Matrix3Xd PointsToShow(const std::vector<TraceModel*>& traces) {
   return matrix;
 }
 
-// The share of the arms' geoms that nothing hides from each of the views.
+// Whether the straight line from `from` on towards `direction` meets the box around a geom.
+bool MeetsBox(const Eigen::Vector3d& from, const Eigen::Vector3d& direction, const Pose& X_WG,
+              const Eigen::Vector3d& half) {
+  const Eigen::Vector3d p_G = X_WG.Inverse() * from;
+  const Eigen::Vector3d v_G = X_WG.RotateInverse(direction);
+  double enter = 0, leave = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3;
+       ++axis) {  // A slab each; a quotient by zero is infinite, as it is to be.
+    const double a = (-half[axis] - p_G[axis]) / v_G[axis];
+    const double b = (half[axis] - p_G[axis]) / v_G[axis];
+    enter = std::max(enter, std::min(a, b));
+    leave = std::min(leave, std::max(a, b));
+  }
+  return enter <= leave;
+}
+
+// Whether the centre of a geom of the robot is in sight, with no obstacle before or behind it: the
+// two would be hard to tell apart.
+bool StandsOut(const TraceModel& trace, int geom, const Eigen::Vector3d& from) {
+  const mjModel& model = trace.model();
+  const Eigen::Vector3d ray = GeomPosition(trace.data(), geom) - from;
+  for (int other = 0; other < model.ngeom; ++other) {
+    if (trace.ObstacleOf(other) >= 0 &&
+        MeetsBox(from, ray, GeomPose(trace.data(), other), HalfExtents(model, other))) {
+      return false;
+    }
+  }
+  const mjtByte drawn_groups[mjNGROUP] = {1, 1, 1, 0, 0, 0};
+  int hit = -1;
+  const double share = mj_ray(&model, &trace.data(), from.data(), ray.data(), drawn_groups,
+                              /*flg_static=*/1, /*bodyexclude=*/-1, &hit);
+  return hit < 0 || share >= 1 || trace.IsRobot(hit);
+}
+
+// The share of the arms' geoms that stand out, from each of the views.
 std::vector<double> Visibility(const std::vector<Moment>& moments,
                                const std::vector<CameraView>& views) {
   std::vector<double> seen(views.size(), 0);
   int count = 0;
-  const mjtByte drawn_groups[mjNGROUP] = {1, 1, 1, 0, 0, 0};
   for (const Moment& moment : moments) {
+    const TraceModel& trace = *moment.trace;
     moment.trace->MoveTo(moment.t);
-    const mjModel& model = moment.trace->model();
-    const mjData& data = moment.trace->data();
-    for (int geom = 0; geom < model.ngeom; ++geom) {
-      if (!moment.trace->IsRobot(geom) || model.geom_group[geom] > 2) continue;
+    for (int geom = 0; geom < trace.model().ngeom; ++geom) {
+      if (!trace.IsRobot(geom) || trace.model().geom_group[geom] > 2) continue;
       ++count;
       for (std::size_t i = 0; i < views.size(); ++i) {
-        const Eigen::Vector3d from = views[i].position_m();
-        const Eigen::Vector3d ray =
-            Eigen::Map<const Eigen::Vector3d>(data.geom_xpos + 3 * geom) - from;
-        int hit = -1;
-        const double share = mj_ray(&model, &data, from.data(), ray.data(), drawn_groups,
-                                    /*flg_static=*/1, /*bodyexclude=*/-1, &hit);
-        if (hit < 0 || share >= 1 || moment.trace->IsRobot(hit)) ++seen[i];
+        if (StandsOut(trace, geom, views[i].position_m())) ++seen[i];
       }
     }
   }
   for (double& share : seen) share /= std::max(1, count);
   return seen;
+}
+
+// How long the paths of the arms' tips look from a view, as a share of their length.
+double ApparentLength(const std::vector<TraceModel*>& traces, const CameraView& view) {
+  double apparent_m = 0, true_m = 0;
+  for (const TraceModel* const trace : traces) {
+    const Eigen::Matrix3Xd path = trace->TipTrail(EpisodeTime(kWatched_s));
+    for (Eigen::Index i = 1; i < path.cols(); ++i) {
+      const Eigen::Vector3d step = path.col(i) - path.col(i - 1);
+      apparent_m += step.cross(view.forward()).norm();
+      true_m += step.norm();
+    }
+  }
+  return true_m > 0 ? apparent_m / true_m : 1;
 }
 
 // The level direction in which the obstacles travel; zero if they stand.
@@ -178,9 +225,12 @@ CameraView ChooseView(const std::vector<TraceModel*>& traces, const Frustum& fru
   std::size_t best = 0;
   double best_score = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < views.size(); ++i) {
-    const double across = travel.cross(views[i].forward()).norm();
+    const double heading = views[i].azimuth_rad;
+    const double across = std::abs(travel.x() * std::sin(heading) - travel.y() * std::cos(heading));
     const double size = least_distance_m / views[i].distance_m;
-    const double score = visibility[i] + 0.3 * across + 0.5 * size;
+    const double score = kWeightVisibility * visibility[i] +
+                         kWeightPath * ApparentLength(traces, views[i]) + kWeightSize * size +
+                         kWeightAcross * across;
     if (score > best_score) {
       best_score = score;
       best = i;

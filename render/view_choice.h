@@ -7,10 +7,10 @@
 
 namespace sidestep {
 
-/// Chooses one view for all traces, from what they show: the arms throughout, everything that
-/// stands, and the obstacles from their start until they have passed, within the first 3 s. Among
-/// views from all around and somewhat above, it takes the one in which obstacles hide least of the
-/// arms, cross the picture rather than come at it, and everything is large.
+/// Chooses one view for all traces, from what they show in their first 3 s: the arms throughout,
+/// everything that stands, and each obstacle from 1 s before until 0.4 s after it passes. Among
+/// views from all around and somewhat above, it takes the one in which the arms stand out most
+/// from the obstacles, the motions run across the picture, and everything is large.
 /// Moves the traces to other moments.
 CameraView ChooseView(const std::vector<TraceModel*>& traces, const Frustum& frustum);
 

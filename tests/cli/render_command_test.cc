@@ -1,0 +1,97 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "cli/command.h"
+#include "core/input_error.h"
+#include "core/recording.h"
+#include "tests/render/sample_recording.h"
+
+namespace sidestep {
+namespace {
+
+using ::testing::HasSubstr;
+
+class RenderCommand : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::create_directories(folder_);
+    WriteRecording(MakeSampleRecording({}), trace_);
+  }
+  void TearDown() override {
+    std::filesystem::remove_all(folder_);
+    unsetenv("MUJOCO_GL");
+  }
+  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
+
+  // What is wrong with `sidestep render ARGUMENTS`, or "done".
+  static std::string Run(const std::string& arguments) {
+    CommandLine line;
+    AddRenderCommand(line);
+    try {
+      line.app.parse("render " + arguments);
+    } catch (const InputError& error) {
+      return error.what();
+    } catch (const CLI::ParseError& error) {
+      return error.what();
+    }
+    return line.exit_code == 0 ? "done" : "exit code " + std::to_string(line.exit_code);
+  }
+
+  std::filesystem::path folder_ =
+      std::filesystem::path(::testing::TempDir()) / ("render_command_" + std::to_string(getpid()));
+  std::string trace_ = Path("trace.h5");
+};
+
+TEST_F(RenderCommand, WritesVideoAndStill) {
+  EXPECT_EQ(Run(trace_ + " --out " + Path("a.mp4") + " --still " + Path("a.png") +
+                " --size 320x180 --fps 5 --speed 2 --camera from_above --title Sample"),
+            "done");
+  EXPECT_TRUE(std::filesystem::exists(Path("a.mp4")));
+  EXPECT_TRUE(std::filesystem::exists(Path("a.png")));
+}
+
+TEST_F(RenderCommand, SaysInOneLineWhatIsWrong) {
+  std::ofstream(Path("cut.h5")) << "sidestep trace 1\n";
+  const std::string still = " --still " + Path("a.png");
+  const struct {
+    std::string arguments, message;
+  } cases[] = {
+      {trace_, "--out: give --out FILE.mp4, --still FILE.png, or both"},
+      {trace_ + " --out " + Path("a.mp4") + " --at 1", "--at: needs --still"},
+      {trace_ + still + " --size 1280", "--size: must be WIDTHxHEIGHT in pixels"},
+      {trace_ + still + " --size 640x360x2", "--size: must be WIDTHxHEIGHT in pixels"},
+      {trace_ + still + " --size 99999x2", "--size: must be WIDTHxHEIGHT in pixels"},
+      {trace_ + still + " --size 641x360", "--size: width and height must be even"},
+      {trace_ + still + " --size 30x30", "--size: 30x30 is too small for 1 traces"},
+      {trace_ + still + " --at -1", "--at: "},
+      {trace_ + still + " --fps 0", "--fps: "},
+      {trace_ + still + " --speed 0", "--speed: "},
+      {trace_ + still + " --camera left", "--camera: 'left' is not in "},
+      {trace_ + still + " --title a b", "--title: give one for each of the 1 traces, not 2"},
+      {Path("absent.h5") + still, Path("absent.h5") + ": no such file"},
+      {Path("cut.h5") + still, Path("cut.h5") + ": is cut off"},
+      {Path(".") + still, "is a directory, not a file"},
+      {trace_ + " --still " + Path("absent/a.png"), "absent/a.png: cannot be written"},
+  };
+  for (const auto& c : cases) {
+    const std::string message = Run(c.arguments);
+    EXPECT_THAT(message, HasSubstr(c.message)) << c.arguments;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+  EXPECT_FALSE(std::filesystem::exists(Path("a.png")));
+  EXPECT_FALSE(std::filesystem::exists(Path("a.mp4")));
+}
+
+TEST_F(RenderCommand, RefusesToDrawWhereTheEnvironmentForbidsIt) {
+  setenv("MUJOCO_GL", "disable", 1);
+  EXPECT_THAT(Run(trace_ + " --still " + Path("a.png")), HasSubstr("MUJOCO_GL: is 'disable'"));
+}
+
+}  // namespace
+}  // namespace sidestep

@@ -1,0 +1,68 @@
+#include "render/captions.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+#include "tests/render/sample_recording.h"
+
+namespace sidestep {
+namespace {
+
+TEST(Captions, NameWhatThePlannerWasTold) {
+  const struct {
+    const char *knowledge, *name;
+  } cases[] = {{"static", "Static"},
+               {"execute_and_update", "Execute and update"},
+               {"prediction", "Prediction"},
+               {"full_knowledge", "Full knowledge"},
+               {"telepathy", "telepathy"}};
+  for (const auto& c : cases) {
+    Recording recording;
+    recording.header["knowledge"] = c.knowledge;
+    EXPECT_EQ(TitleOf(recording, "trace.h5").name, c.name);
+  }
+  EXPECT_EQ(TitleOf(Recording(), "trace.h5").name, "trace.h5");
+}
+
+struct StatusCase {
+  bool contact;
+  double t_s;
+  const char* text;
+  Mood mood;
+};
+
+TEST(Captions, TellHowTheEpisodeStands) {
+  const StatusCase cases[] = {
+      {false, 0.0, "clearance 281 mm, least so far 281 mm", Mood::kNeutral},
+      {false, 1.2, "clearance 41 mm, least so far 41 mm", Mood::kNear},
+      {false, 1.5, "clearance 81 mm, least so far 31 mm", Mood::kNeutral},
+      {false, 1.95, "goal reached at 1.90 s, least clearance 31 mm", Mood::kGood},
+      {true, 0.99, "clearance 83 mm, least so far 83 mm", Mood::kNeutral},
+      {true, 1.0, "CONTACT at 1.00 s with trolley", Mood::kBad},
+      {true, 2.0, "CONTACT at 1.00 s with trolley", Mood::kBad},
+  };
+  for (const StatusCase& c : cases) {
+    SampleEpisode episode;
+    episode.contact = c.contact;
+    const Status status = StatusAt(MakeSampleRecording(episode), EpisodeTime(c.t_s + 1e-9));
+    EXPECT_EQ(status.text, c.text);
+    EXPECT_EQ(status.mood, c.mood) << c.text;
+  }
+}
+
+TEST(Captions, SayThatTheGoalWasNotReachedOnlyAtTheEnd) {
+  Recording recording = MakeSampleRecording({});
+  recording.metrics["time_to_goal_s"] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(StatusAt(recording, EpisodeTime(1.99)).mood, Mood::kNeutral);
+  EXPECT_EQ(StatusAt(recording, EpisodeTime(2.0)).text, "goal not reached, least clearance 31 mm");
+  EXPECT_EQ(StatusAt(recording, EpisodeTime(2.0)).mood, Mood::kNear);
+}
+
+TEST(Captions, AreSilentAboutWhatWasNotRecorded) {
+  EXPECT_EQ(StatusAt(Recording(), EpisodeTime(0)).text, "");
+}
+
+}  // namespace
+}  // namespace sidestep

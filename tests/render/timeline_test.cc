@@ -1,0 +1,107 @@
+#include "render/timeline.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "tests/render/sample_recording.h"
+
+namespace sidestep {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+TEST(Timeline, GivesTheJointsBetweenSamplesOnAStraightLine) {
+  Recording recording;
+  for (const double t_s : {1.0, 2.0, 4.0}) {
+    ControlSample sample;
+    sample.t = EpisodeTime(t_s);
+    sample.q = Eigen::Vector2d(10 * t_s, -t_s);
+    recording.control.push_back(sample);
+  }
+  const struct {
+    double t_s, q;
+  } cases[] = {{0, 10}, {1, 10}, {1.5, 15}, {2, 20}, {3.5, 35}, {4, 40}, {9, 40}};
+  for (const auto& c : cases) {
+    EXPECT_NEAR(JointsAt(recording, EpisodeTime(c.t_s))(0), c.q, 1e-12) << c.t_s;
+    EXPECT_NEAR(JointsAt(recording, EpisodeTime(c.t_s))(1), -c.q / 10, 1e-12) << c.t_s;
+  }
+  EXPECT_EQ(EndOf(recording), EpisodeTime(4));
+}
+
+TEST(Timeline, TurnsPosesEvenlyAndClampsThemOutside) {
+  const std::vector<EpisodeTime> times = {EpisodeTime(1), EpisodeTime(2)};
+  const std::vector<Pose> poses = {Pose::FromRollPitchYaw({0, 0, 0}, {0, 0, 0}),
+                                   Pose::FromRollPitchYaw({0, 0, kPi / 2}, {4, 0, 2})};
+  const Pose X = PoseAt(times, poses, EpisodeTime(1.25));
+  EXPECT_LT((X.translation() - Eigen::Vector3d(1, 0, 0.5)).norm(), 1e-12);
+  const Eigen::Vector3d x_axis = X.Rotate(Eigen::Vector3d::UnitX());
+  EXPECT_NEAR(std::atan2(x_axis.y(), x_axis.x()), kPi / 8, 1e-12);
+  EXPECT_EQ(PoseAt(times, poses, EpisodeTime(0)).translation(), poses[0].translation());
+  EXPECT_EQ(PoseAt(times, poses, EpisodeTime(7)).translation(), poses[1].translation());
+}
+
+TEST(Timeline, FollowsTheObstacleAndItsSpeed) {
+  const Recording recording = MakeSampleRecording({});
+  for (const double t_s : {0.0, 0.333, 1.0, 1.999, 2.0}) {
+    const std::vector<Pose> poses = ObstaclesAt(recording, EpisodeTime(t_s));
+    ASSERT_EQ(poses.size(), 1u);
+    EXPECT_LT((poses[0].translation() - TrolleyPoseAt(t_s).translation()).norm(), 1e-12);
+    EXPECT_NEAR(ObstacleSpeedAt(recording, EpisodeTime(t_s)), kTrolleySpeed_m_s, 1e-9) << t_s;
+  }
+  EXPECT_EQ(ObstacleSpeedAt(Recording(), EpisodeTime(0)), 0);
+}
+
+TEST(Timeline, KnowsWhichPlanIsInForce) {
+  Recording recording = MakeSampleRecording({});
+  recording.cycles[3].accepted = false;     // observed at 0.3 s, of effect at 0.35 s
+  recording.cycles[4].plan = Trajectory();  // 0.4 s, 0.45 s
+  const struct {
+    double t_s;
+    int cycle;
+  } cases[] = {{0, -1},   {0.049, -1}, {0.05, 0}, {0.1, 0}, {0.26, 2},
+               {0.36, 2}, {0.46, 2},   {0.56, 5}, {99, 18}};
+  for (const auto& c : cases) {
+    const CycleRecord* const cycle = CycleInForce(recording, EpisodeTime(c.t_s + 1e-9));
+    EXPECT_EQ(cycle == nullptr ? -1 : cycle - recording.cycles.data(), c.cycle) << c.t_s;
+  }
+}
+
+TEST(Timeline, FindsTheLeastClearanceUpToAMoment) {
+  const Recording recording = MakeSampleRecording({});  // 31 mm + 0.2 m/s |t - 1.25 s|
+  EXPECT_NEAR(LeastClearance(recording, EpisodeTime(0.5))->clearance_m, 0.031 + 0.15, 1e-12);
+  EXPECT_NEAR(LeastClearance(recording, EpisodeTime(2))->clearance_m, 0.031, 1e-12);
+  EXPECT_NEAR(LeastClearance(recording, EpisodeTime(2))->t.seconds(), 1.25, 1e-12);
+  EXPECT_NEAR(ClearanceAt(recording, EpisodeTime(2))->clearance_m, 0.031 + 0.15, 1e-12);
+  EXPECT_FALSE(LeastClearance(Recording(), EpisodeTime(2)));
+  EXPECT_FALSE(ClearanceAt(Recording(), EpisodeTime(2)));
+}
+
+TEST(Timeline, FindsTheFirstTouchAndTheRecentOnes) {
+  EXPECT_FALSE(FirstTouch(MakeSampleRecording({})));
+  SampleEpisode episode;
+  episode.contact = true;  // from 1.00 s to 1.09 s
+  const Recording recording = MakeSampleRecording(episode);
+  ASSERT_TRUE(FirstTouch(recording));
+  EXPECT_NEAR(FirstTouch(recording)->t.seconds(), 1.0, 1e-12);
+  EXPECT_EQ(FirstTouch(recording)->object, "trolley");
+  const HorizonOffset window(0.25);
+  EXPECT_FALSE(TouchWithin(recording, EpisodeTime(0.99), window));
+  EXPECT_NEAR(TouchWithin(recording, EpisodeTime(1.052), window)->t.seconds(), 1.05, 1e-12);
+  EXPECT_NEAR(TouchWithin(recording, EpisodeTime(1.30), window)->t.seconds(), 1.09, 1e-12);
+  EXPECT_FALSE(TouchWithin(recording, EpisodeTime(1.36), window));
+}
+
+TEST(Timeline, TimesATouchWithoutATimeByItsSample) {
+  Recording recording;
+  TruthSample sample;
+  sample.t = EpisodeTime(0.42);
+  sample.in_contact = true;
+  recording.truth = {sample};
+  EXPECT_EQ(FirstTouch(recording)->t, EpisodeTime(0.42));
+}
+
+}  // namespace
+}  // namespace sidestep
