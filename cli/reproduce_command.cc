@@ -18,6 +18,7 @@
 #include "cli/command.h"
 #include "cli/data_paths.h"
 #include "core/input_error.h"
+#include "sdf/prediction/registry.h"
 
 namespace sidestep {
 namespace {
@@ -25,7 +26,7 @@ namespace {
 struct ReproduceOptions {
   std::optional<double> sigma_obs, epsilon_m;
   std::optional<int> num_interpolated;
-  std::string speeds, pairs, cases;
+  std::string speeds, pairs, cases, predictor;
   bool once = false, intended_geometry = false;
   int num_jobs = 1;
   std::string published, out;
@@ -124,21 +125,26 @@ void ShowProgress(int done, int all) {
 }
 
 void PrintSummary(const OpenLoopStudy& study) {
-  std::printf("%-20s %16s %14s %14s\n", "planner knows", "collision-free", "mean GP cost",
-              "mean obstacle");
-  for (const auto& [knowledge, unused] : study.rows.front().results) {
-    int free = 0;
-    double gp = 0, obstacle = 0;
+  std::printf("%-20s %16s %16s %16s %14s\n", "planner knows", "collision-free", "truly free",
+              "truly free", "mean GP cost");
+  std::printf("%-20s %16s %16s %16s\n", "", "as published", "at the states", "all along");
+  for (const auto& [knowledge, unused] : study.rows.front().cases) {
+    int free = 0, truly_free_states = 0, truly_free = 0;
+    double gp_cost = 0;
     for (const OpenLoopRow& row : study.rows) {
-      const OpenLoopResult& result = row.results.at(knowledge);
-      free += result.colliding_states == 0 ? 1 : 0;
-      gp += result.gp_cost;
-      obstacle += result.obstacle_cost;
+      const OpenLoopRow::Case& entry = row.cases.at(knowledge);
+      const bool is_free = entry.result.colliding_states == 0;
+      free += is_free ? 1 : 0;
+      truly_free_states += is_free && entry.clearance.states_m > 0 ? 1 : 0;
+      truly_free += is_free && entry.clearance.motion_m() > 0 ? 1 : 0;
+      gp_cost += entry.result.gp_cost / static_cast<double>(study.rows.size());
     }
-    const double rows = static_cast<double>(study.rows.size());
-    std::printf("%-20s %9d of %4.0f %14.4f %14.4f\n", ToString(knowledge).c_str(), free, rows,
-                gp / rows, obstacle / rows);
+    std::printf("%-20s %8d of %4zu %16d %16d %14.4f\n", ToString(knowledge).c_str(), free,
+                study.rows.size(), truly_free_states, truly_free, gp_cost);
   }
+  std::printf(
+      "(truly free: of the collision-free, those whose spheres clear the exact boxes, which stand\n"
+      "where they were meant to and move between the states)\n");
   if (!study.ignored_spheres.empty()) {
     std::string spheres;
     for (const int s : study.ignored_spheres) spheres += " " + std::to_string(s);
@@ -156,6 +162,14 @@ int RunOpenLoopExperiment(const std::string& name, const ReproduceOptions& optio
   if (!options.cases.empty()) study_options.cases = ParseCases(options.cases);
   if (!options.pairs.empty()) {
     study_options.pairs = ParsePairs(options.pairs, static_cast<int>(experiment.pairs.size()));
+  }
+  if (!options.predictor.empty()) {
+    try {
+      MakePredictor(options.predictor);
+    } catch (const std::invalid_argument& error) {
+      throw InputError("--predictor", error.what());
+    }
+    study_options.predictor = options.predictor;
   }
   study_options.once = options.once;
   study_options.intended_geometry = options.intended_geometry;
@@ -208,6 +222,8 @@ void AddReproduceCommand(CommandLine& line) {
     command->add_option("--case", options->cases,
                         "Kinds of knowledge, comma-separated: static, execute_and_update, "
                         "full_knowledge, prediction");
+    command->add_option("--predictor", options->predictor,
+                        "How moving things are extrapolated under prediction");
     command->add_flag("--once", options->once,
                       "Solve static and full_knowledge once only, as the paper's text says");
     command->add_flag("--intended-geometry", options->intended_geometry,

@@ -19,7 +19,8 @@ namespace {
 // What all kinds of knowledge share: the order of scans, the grid, the static map, the clock.
 class MappedWorld : public WorldModel {
  public:
-  explicit MappedWorld(const WorldModelOptions& options) : options_(options) {}
+  explicit MappedWorld(const WorldModelOptions& options)
+      : options_(options), static_map_(options.convention) {}
 
   void Observe(const Scan& scan) final {
     if (t_scan_ && scan.t <= *t_scan_) {
@@ -87,7 +88,8 @@ class PredictedWorld final : public MappedWorld {
   explicit PredictedWorld(const WorldModelOptions& options)
       : MappedWorld(options),
         predictor_(MakePredictor(options.predictor)),
-        tracker_(options.grid, {.max_distance_m = options.max_distance_m}) {}
+        tracker_(options.grid,
+                 {.max_distance_m = options.max_distance_m, .convention = options.convention}) {}
 
   std::vector<PredictedObject> DescribeObjects(
       const std::vector<EpisodeTime>& times) const override {

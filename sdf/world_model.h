@@ -10,6 +10,7 @@
 #include "core/recording.h"
 #include "core/time.h"
 #include "sdf/distance_field.h"
+#include "sdf/map/distance_transform.h"
 
 namespace sidestep {
 
@@ -35,7 +36,9 @@ struct WorldModelOptions {
   std::string predictor = "two_frame";  ///< a name of sdf/prediction/registry.h
   GridSpec grid;                        ///< in W
   double max_distance_m = 0;            ///< fields are clamped here: safety margin + largest sphere
-  TrueObstacles true_obstacles;         ///< must be set for full_knowledge
+  /// Of fields made from cells; full_knowledge has the true shapes of what moves.
+  DistanceConvention convention = DistanceConvention::kSurface;
+  TrueObstacles true_obstacles;  ///< must be set for full_knowledge
 };
 
 /// Seconds of wall clock that the stages of one planning cycle took, for the report only.

@@ -78,9 +78,13 @@ OpenLoopExperiment PandaHsr() {
 }  // namespace
 
 PublishedBox OpenLoopExperiment::MovingBoxAt(double speed_m_s, int step) const {
-  const double t_s = std::min(step * step_s, stop_s);
+  return MovingBoxAtTime(speed_m_s, step * step_s);
+}
+
+PublishedBox OpenLoopExperiment::MovingBoxAtTime(double speed_m_s, double t_s) const {
+  // In this order: the authors' rounding decides ties.
   const Eigen::Vector3d velocity_m_s = speed_m_s * direction;
-  return {moving_box.center_m + t_s * velocity_m_s, moving_box.size_m};
+  return {moving_box.center_m + std::min(t_s, stop_s) * velocity_m_s, moving_box.size_m};
 }
 
 std::vector<std::string> OpenLoopExperimentNames() { return {"panda_hsr", "wam_single_pillar"}; }

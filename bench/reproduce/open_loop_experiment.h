@@ -42,8 +42,9 @@ struct OpenLoopExperiment {
   double epsilon_m = 0;
   int num_interpolated = 0;
 
-  /// Where the moving box is at step k; before 0 it rests at its start.
+  /// Where the moving box is, at a step k >= 0 or a time >= 0.
   PublishedBox MovingBoxAt(double speed_m_s, int step) const;
+  PublishedBox MovingBoxAtTime(double speed_m_s, double t_s) const;
 };
 
 /// "panda_hsr", "wam_single_pillar".

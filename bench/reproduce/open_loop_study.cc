@@ -1,35 +1,41 @@
 #include "bench/reproduce/open_loop_study.h"
 
+#include <algorithm>
 #include <mutex>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 
 #include "bench/reproduce/parallel.h"
+#include "bench/reproduce/predicted_maps.h"
 #include "bench/reproduce/published_maps.h"
 
 namespace sidestep {
 namespace {
 
-OpenLoopResult RunCase(const OpenLoopExperiment& experiment, const RobotModel& robot,
-                       const OpenLoopTask& task, const std::vector<const DistanceField*>& truth,
-                       Knowledge knowledge, bool once) {
-  const auto map = [&](int step) -> const DistanceField& {
+constexpr DistanceConvention kConvention = DistanceConvention::kBwdist;
+
+// What the planner believes at solve `now` of step k; `predicted` is asked under prediction only.
+BelievedField MakeBelief(Knowledge knowledge, const std::vector<const DistanceField*>& truth,
+                         const BelievedField& predicted) {
+  const auto map = [&truth](int step) -> const DistanceField& {
     return *truth[static_cast<std::size_t>(step)];
   };
   switch (knowledge) {
     case Knowledge::kStatic:
-      return RunOpenLoop(
-          experiment, robot, task, [&](int, int) -> auto& { return map(0); }, truth, once);
+      return [map](int, int) -> const DistanceField& { return map(0); };
     case Knowledge::kExecuteAndUpdate:
-      return RunOpenLoop(
-          experiment, robot, task, [&](int now, int) -> auto& { return map(now); }, truth, false);
-    case Knowledge::kFullKnowledge:
-      return RunOpenLoop(
-          experiment, robot, task, [&](int, int k) -> auto& { return map(k); }, truth, once);
+      return [map](int now, int) -> const DistanceField& { return map(now); };
     case Knowledge::kPrediction:
-      break;
+      return predicted;
+    case Knowledge::kFullKnowledge:
+      return [map](int, int k) -> const DistanceField& { return map(k); };
   }
-  throw std::invalid_argument("no open-loop protocol for " + ToString(knowledge));
+  throw std::invalid_argument("not a kind of knowledge");
+}
+
+bool KnowsTheWorldBeforehand(Knowledge knowledge) {
+  return knowledge == Knowledge::kStatic || knowledge == Knowledge::kFullKnowledge;
 }
 
 }  // namespace
@@ -46,6 +52,8 @@ OpenLoopStudy RunOpenLoopStudy(const OpenLoopExperiment& experiment, const std::
   const std::string& robot_file =
       options.intended_geometry ? experiment.own_robot : experiment.published_robot;
   const RobotModel robot = RobotModel::FromFile(models_dir + "/" + robot_file, experiment.X_WB);
+  const RobotModel own_robot =
+      RobotModel::FromFile(models_dir + "/" + experiment.own_robot, experiment.X_WB);
 
   OpenLoopStudy study;
   study.ignored_spheres = robot.mount_spheres();
@@ -54,13 +62,21 @@ OpenLoopStudy RunOpenLoopStudy(const OpenLoopExperiment& experiment, const std::
       throw std::invalid_argument(experiment.name + " has pairs 1 to " + std::to_string(num_pairs) +
                                   ", not " + std::to_string(pair));
     }
-    for (const double speed_m_s : experiment.speeds_m_s)
+    for (const double speed_m_s : experiment.speeds_m_s) {
       study.rows.push_back({pair, speed_m_s, {}});
+    }
   }
 
   const PublishedMaps maps(
       experiment, options.intended_geometry ? BoxAlignment::kIntended : BoxAlignment::kOneCellLow,
-      DistanceConvention::kBwdist, options.num_jobs);
+      kConvention, options.num_jobs);
+
+  std::optional<PredictedMaps> predicted;
+  if (std::find(options.cases.begin(), options.cases.end(), Knowledge::kPrediction) !=
+      options.cases.end()) {
+    predicted.emplace(experiment, maps, kConvention, options.predictor,
+                      experiment.epsilon_m + robot.largest_sphere_radius_m(), options.num_jobs);
+  }
 
   std::mutex mutex;
   int done = 0;
@@ -70,8 +86,16 @@ OpenLoopStudy RunOpenLoopStudy(const OpenLoopExperiment& experiment, const std::
     const auto& [start, goal] = experiment.pairs[static_cast<std::size_t>(row.pair - 1)];
     const OpenLoopTask task{robot.configurations().at(start), robot.configurations().at(goal)};
     const std::vector<const DistanceField*> truth = maps.FieldsAt(row.speed_m_s);
+    const BelievedField ask_prediction = [&](int now, int k) -> const DistanceField& {
+      return predicted->At(row.speed_m_s, now, k);
+    };
     for (const Knowledge knowledge : options.cases) {
-      row.results[knowledge] = RunCase(experiment, robot, task, truth, knowledge, options.once);
+      OpenLoopRow::Case& entry = row.cases[knowledge];
+      entry.result =
+          RunOpenLoop(experiment, robot, task, MakeBelief(knowledge, truth, ask_prediction), truth,
+                      options.once && KnowsTheWorldBeforehand(knowledge));
+      entry.clearance =
+          MeasureTrueClearance(experiment, own_robot, entry.result.trajectory, row.speed_m_s);
     }
     const std::lock_guard lock(mutex);
     ++done;

@@ -7,6 +7,7 @@
 
 #include "bench/reproduce/open_loop.h"
 #include "bench/reproduce/open_loop_experiment.h"
+#include "bench/reproduce/true_clearance.h"
 #include "robot/robot_model.h"
 #include "sdf/world_model.h"
 
@@ -17,7 +18,8 @@ namespace sidestep {
 struct OpenLoopStudyOptions {
   std::vector<Knowledge> cases = {Knowledge::kStatic, Knowledge::kExecuteAndUpdate,
                                   Knowledge::kFullKnowledge};
-  std::vector<int> pairs = {};  ///< counted from 1, as published; empty: all
+  std::vector<int> pairs = {};          ///< counted from 1, as published; empty: all
+  std::string predictor = "two_frame";  ///< under `prediction`; a name of sdf/prediction/registry.h
   bool once = false;  ///< static and full_knowledge are solved once only, as the paper says
   /// Static boxes where the authors meant them (BoxAlignment::kIntended) and the product's own
   /// robot, whose mount spheres are ignored: it stands in its table by the published ones.
@@ -27,9 +29,13 @@ struct OpenLoopStudyOptions {
 
 /// One row of the published tables: a pair at a speed, under every kind of knowledge that was run.
 struct OpenLoopRow {
+  struct Case {
+    OpenLoopResult result;
+    TrueClearance clearance;  ///< by the product's own robot and the boxes as they were meant
+  };
   int pair = 0;
   double speed_m_s = 0;
-  std::map<Knowledge, OpenLoopResult> results;
+  std::map<Knowledge, Case> cases;
 };
 
 struct OpenLoopStudy {

@@ -28,29 +28,35 @@ constexpr std::size_t kNumPublishedCases = 3;
 struct Measure {
   const char* prefix;
   bool is_count;
-  double (*get)(const OpenLoopResult& result);
+  double (*get)(const OpenLoopRow::Case& entry);
 };
 constexpr Measure kPublishedMeasures[] = {
     {"n_colliding_states_", true,
-     [](const OpenLoopResult& r) { return static_cast<double>(r.colliding_states); }},
-    {"gp_cost_", false, [](const OpenLoopResult& r) { return r.gp_cost; }},
-    {"obstacle_cost_", false, [](const OpenLoopResult& r) { return r.obstacle_cost; }},
+     [](const OpenLoopRow::Case& c) { return static_cast<double>(c.result.colliding_states); }},
+    {"gp_cost_", false, [](const OpenLoopRow::Case& c) { return c.result.gp_cost; }},
+    {"obstacle_cost_", false, [](const OpenLoopRow::Case& c) { return c.result.obstacle_cost; }},
 };
 constexpr Measure kOwnMeasures[] = {
     {"iterations_", true,
-     [](const OpenLoopResult& r) { return static_cast<double>(r.iterations); }},
+     [](const OpenLoopRow::Case& c) { return static_cast<double>(c.result.iterations); }},
+    {"true_clearance_moving_m_", false,
+     [](const OpenLoopRow::Case& c) { return c.clearance.moving_m; }},
+    {"true_clearance_static_m_", false,
+     [](const OpenLoopRow::Case& c) { return c.clearance.static_m; }},
+    {"true_clearance_states_m_", false,
+     [](const OpenLoopRow::Case& c) { return c.clearance.states_m; }},
 };
 
 struct Column {
   std::string name;
   Knowledge knowledge;
-  double (*get)(const OpenLoopResult& result);
+  double (*get)(const OpenLoopRow::Case& entry);
 };
 
 std::vector<Column> Columns(const OpenLoopStudy& study) {
   std::vector<Column> columns;
   const auto add = [&](const Measure& measure, const CaseName& entry) {
-    if (study.rows.empty() || !study.rows.front().results.contains(entry.knowledge)) return;
+    if (study.rows.empty() || !study.rows.front().cases.contains(entry.knowledge)) return;
     columns.push_back({std::string(measure.prefix) + entry.name, entry.knowledge, measure.get});
   };
   for (const Measure& measure : kPublishedMeasures) {
@@ -118,7 +124,7 @@ CsvTable MakeOpenLoopTable(const OpenLoopStudy& study) {
   for (const OpenLoopRow& row : study.rows) {
     std::vector<std::optional<double>> fields = {row.pair, row.speed_m_s};
     for (const Column& column : columns) {
-      fields.push_back(column.get(row.results.at(column.knowledge)));
+      fields.push_back(column.get(row.cases.at(column.knowledge)));
     }
     fields.push_back(static_cast<double>(study.ignored_spheres.size()));
     table.AddRow(std::move(fields));

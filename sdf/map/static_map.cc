@@ -1,7 +1,5 @@
 #include "sdf/map/static_map.h"
 
-#include "sdf/map/distance_transform.h"
-
 namespace sidestep {
 
 void StaticMap::Set(const OccupancyGrid& occupancy) {
@@ -11,7 +9,9 @@ void StaticMap::Set(const OccupancyGrid& occupancy) {
 }
 
 std::shared_ptr<const SdfGrid> StaticMap::Field() {
-  if (!field_) field_ = std::make_shared<const SdfGrid>(ComputeSignedDistance(occupancy_));
+  if (!field_) {
+    field_ = std::make_shared<const SdfGrid>(ComputeSignedDistance(occupancy_, convention_));
+  }
   return field_;
 }
 

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "core/grid.h"
+#include "sdf/map/distance_transform.h"
 #include "sdf/map/sdf_grid.h"
 
 namespace sidestep {
@@ -10,12 +11,16 @@ namespace sidestep {
 /// The field of what does not move. Transformed only when it is asked for and has changed.
 class StaticMap {
  public:
+  explicit StaticMap(DistanceConvention convention = DistanceConvention::kSurface)
+      : convention_(convention) {}
+
   void Set(const OccupancyGrid& occupancy);
 
   /// Of the occupancy last set; there must be one.
   std::shared_ptr<const SdfGrid> Field();
 
  private:
+  DistanceConvention convention_;
   OccupancyGrid occupancy_;
   std::shared_ptr<const SdfGrid> field_;  // null: not transformed since it changed
 };

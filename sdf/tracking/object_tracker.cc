@@ -228,8 +228,8 @@ void ObjectTracker::TakeShape(Track& track, const Component& component) const {
   if (track.state != State::kMoving) return;  // what does not move needs no field of its own
   OccupancyGrid shape_O = CutOut(component, grid_);
   shape_O.spec.first_center_m -= component.centroid_m;
-  object.field_O =
-      std::make_shared<const SdfGrid>(MakeObjectField(shape_O, options_.max_distance_m));
+  object.field_O = std::make_shared<const SdfGrid>(
+      MakeObjectField(shape_O, options_.max_distance_m, options_.convention));
 }
 
 }  // namespace sidestep

@@ -7,6 +7,7 @@
 
 #include "core/grid.h"
 #include "core/time.h"
+#include "sdf/map/distance_transform.h"
 #include "sdf/tracking/background.h"
 #include "sdf/tracking/segmentation.h"
 #include "sdf/tracking/tracked_object.h"
@@ -20,7 +21,8 @@ struct ObjectTrackerOptions {
   HorizonOffset settle{0.06};  ///< a thing seen for this long that has not moved is static
   HorizonOffset rest{0.4};     ///< the same for a thing that is known to have moved before
   HorizonOffset memory{2};     ///< how far back a history reaches
-  int max_missed_scans = 3;    ///< a moving thing unseen for more scans in a row is given up
+  DistanceConvention convention = DistanceConvention::kSurface;  ///< of objects' fields
+  int max_missed_scans = 3;  ///< a moving thing unseen for more scans in a row is given up
 };
 
 /// What one Update took [s, wall clock], for the report only.

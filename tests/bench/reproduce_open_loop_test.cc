@@ -31,7 +31,12 @@ OpenLoopExperiment AtSpeed(const std::string& name, double speed_m_s) {
 std::map<Knowledge, OpenLoopResult> RunOne(const OpenLoopExperiment& experiment, int pair,
                                            OpenLoopStudyOptions options) {
   options.pairs = {pair};
-  return RunOpenLoopStudy(experiment, kModels, options).rows.at(0).results;
+  std::map<Knowledge, OpenLoopResult> results;
+  for (const auto& [knowledge, entry] :
+       RunOpenLoopStudy(experiment, kModels, options).rows.at(0).cases) {
+    results[knowledge] = entry.result;
+  }
+  return results;
 }
 
 struct PublishedRow {
@@ -136,7 +141,7 @@ TEST(OpenLoop, IgnoresThePandasMountSphereInTheIntendedGeometryOnly) {
   options.intended_geometry = true;
   const OpenLoopStudy study = RunOpenLoopStudy(panda, kModels, options);
   EXPECT_EQ(study.ignored_spheres, std::vector<int>{0});
-  EXPECT_LT(study.rows.at(0).results.at(kStatic).colliding_states, 31)
+  EXPECT_LT(study.rows.at(0).cases.at(kStatic).result.colliding_states, 31)
       << "the base would collide at every state";
 }
 
