@@ -31,11 +31,9 @@ OpenLoopExperiment AtSpeed(const std::string& name, double speed_m_s) {
 std::map<Knowledge, OpenLoopResult> RunOne(const OpenLoopExperiment& experiment, int pair,
                                            OpenLoopStudyOptions options) {
   options.pairs = {pair};
+  const OpenLoopStudy study = RunOpenLoopStudy(experiment, kModels, options);
   std::map<Knowledge, OpenLoopResult> results;
-  for (const auto& [knowledge, entry] :
-       RunOpenLoopStudy(experiment, kModels, options).rows.at(0).cases) {
-    results[knowledge] = entry.result;
-  }
+  for (const auto& [knowledge, entry] : study.rows.at(0).cases) results[knowledge] = entry.result;
   return results;
 }
 
