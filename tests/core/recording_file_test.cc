@@ -37,8 +37,8 @@ class RecordingFile : public ::testing::Test {
   std::string Path(const std::string& name) const { return (folder_ / name).string(); }
 
  private:
-  std::filesystem::path folder_ = std::filesystem::path(::testing::TempDir()) /
-                                  ("recording_file_" + std::to_string(getpid()));
+  std::filesystem::path folder_ =
+      std::filesystem::path(::testing::TempDir()) / ("recording_file_" + std::to_string(getpid()));
 };
 
 std::string ReadBytes(const std::string& path) {
