@@ -81,7 +81,7 @@ OpenLoopStudy RunOpenLoopStudy(const OpenLoopExperiment& experiment, const std::
   std::mutex mutex;
   int done = 0;
   const int num_rows = static_cast<int>(study.rows.size());
-  ParallelFor(num_rows, options.num_jobs, [&](int i) {
+  RunTasks(num_rows, options.num_jobs, [&](int i) {
     OpenLoopRow& row = study.rows[static_cast<std::size_t>(i)];
     const auto& [start, goal] = experiment.pairs[static_cast<std::size_t>(row.pair - 1)];
     const OpenLoopTask task{robot.configurations().at(start), robot.configurations().at(goal)};

@@ -9,7 +9,7 @@
 
 namespace sidestep {
 
-void ParallelFor(int count, int num_jobs, const std::function<void(int)>& task) {
+void RunTasks(int count, int num_jobs, const std::function<void(int)>& task) {
   std::atomic<int> next = 0;
   std::mutex mutex;
   std::exception_ptr error;

@@ -62,7 +62,7 @@ PredictedMaps::PredictedMaps(const OpenLoopExperiment& experiment, const Publish
   for (const double speed_m_s : experiment.speeds_m_s) fields_.try_emplace(speed_m_s);
   std::vector<decltype(fields_)::iterator> entries;
   for (auto entry = fields_.begin(); entry != fields_.end(); ++entry) entries.push_back(entry);
-  ParallelFor(static_cast<int>(entries.size()), num_jobs, [&](int i) {
+  RunTasks(static_cast<int>(entries.size()), num_jobs, [&](int i) {
     auto& [speed_m_s, fields] = *entries[static_cast<std::size_t>(i)];
     const std::unique_ptr<WorldModel> world = MakeWorldModel(options);
     for (int now = 0; now < num_states_; ++now) {

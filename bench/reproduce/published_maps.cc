@@ -18,7 +18,7 @@ PublishedMaps::PublishedMaps(const OpenLoopExperiment& experiment, BoxAlignment 
   }
   std::vector<decltype(fields_)::iterator> entries;
   for (auto entry = fields_.begin(); entry != fields_.end(); ++entry) entries.push_back(entry);
-  ParallelFor(static_cast<int>(entries.size()), num_jobs, [&](int i) {
+  RunTasks(static_cast<int>(entries.size()), num_jobs, [&](int i) {
     auto& [cells, field] = *entries[static_cast<std::size_t>(i)];
     OccupancyGrid occupancy = static_occupancy_;
     Fill(occupancy, cells);

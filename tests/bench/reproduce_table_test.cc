@@ -111,18 +111,18 @@ TEST(TableComparison, RefusesATableWithoutItsKeysOrWithARowTwice) {
   }
 }
 
-TEST(ParallelFor, CallsEachTaskOnceAndPassesAnExceptionOn) {
+TEST(RunTasks, CallsEachTaskOnceAndPassesAnExceptionOn) {
   for (const int num_jobs : {1, 3, 100}) {
     std::vector<int> calls(50, 0);
-    ParallelFor(50, num_jobs, [&](int i) { ++calls[static_cast<std::size_t>(i)]; });
+    RunTasks(50, num_jobs, [&](int i) { ++calls[static_cast<std::size_t>(i)]; });
     EXPECT_EQ(calls, std::vector<int>(50, 1));
-    EXPECT_THROW(ParallelFor(50, num_jobs,
-                             [](int i) {
-                               if (i == 7) throw std::runtime_error("seven");
-                             }),
+    EXPECT_THROW(RunTasks(50, num_jobs,
+                          [](int i) {
+                            if (i == 7) throw std::runtime_error("seven");
+                          }),
                  std::runtime_error);
   }
-  ParallelFor(0, 2, [](int) { FAIL(); });
+  RunTasks(0, 2, [](int) { FAIL(); });
 }
 
 }  // namespace
