@@ -17,14 +17,18 @@ constexpr double kShadowMargin = 1.2;
 constexpr HorizonOffset kTouchShown(0.25);
 constexpr double kTouchRadius_m = 0.045;
 
-// Sets what the model says about its own drawing. Software draws it, so the shadow map is of
-// moderate size and reflections are off.
+// Sets what the model says about its own drawing. Software draws it, so nothing is finer than it
+// can be seen: round shapes have the more corners the larger the picture, up to MuJoCo's own
+// number.
 mjModel& Prepare(mjModel& model, int width, int height) {
   model.vis.global.offwidth = width;
   model.vis.global.offheight = height;
   model.vis.global.fovy = static_cast<float>(kFieldOfView_deg);
   model.vis.quality.offsamples = 4;
   model.vis.quality.shadowsize = 2048;
+  model.vis.quality.numslices = std::clamp(height / 16, 14, 28);
+  model.vis.quality.numstacks = model.vis.quality.numslices / 2;
+  model.vis.quality.numquads = 1;
   return model;
 }
 
@@ -126,6 +130,28 @@ void ScenePainter::DrawPredictions(Overlay& overlay, const CycleRecord& cycle, E
   }
 }
 
+// Leaves out what is well outside the picture; MuJoCo would draw it all the same, three times with
+// shadows. The margin keeps what may throw a shadow into the picture.
+void ScenePainter::DropUnseen() {
+  constexpr double kShadowLength_m = 1.5;
+  mjvScene& scene = scene_.get();
+  const mjvGLCamera eye = mjv_averageCamera(&scene.camera[0], &scene.camera[1]);
+  const auto vector = [](const float* v) { return Eigen::Vector3d(v[0], v[1], v[2]); };
+  const Eigen::Vector3d right = vector(eye.forward).cross(vector(eye.up));
+  const double top = eye.frustum_top / eye.frustum_near;
+  const double side = top * drawing_.viewport().width / drawing_.viewport().height;
+  const auto is_unseen = [&](const mjvGeom& geom) {
+    if (geom.modelrbound == 0) return false;  // endless
+    const Eigen::Vector3d p = vector(geom.pos) - vector(eye.pos);
+    const double reach = geom.modelrbound + kShadowLength_m;
+    const double depth = p.dot(vector(eye.forward));
+    return depth < -reach || std::abs(p.dot(right)) - side * depth > reach * std::hypot(1, side) ||
+           std::abs(p.dot(vector(eye.up))) - top * depth > reach * std::hypot(1, top);
+  };
+  scene.ngeom = static_cast<int>(std::remove_if(scene.geoms, scene.geoms + scene.ngeom, is_unseen) -
+                                 scene.geoms);
+}
+
 // A directional light lights the same from anywhere, but MuJoCo's shadow map is a square around its
 // axis. Moved over what is seen, and no larger than that, the map gives sharp shadows.
 void ScenePainter::AimShadows() {
@@ -164,6 +190,7 @@ Image ScenePainter::Draw(EpisodeTime t) {
   mjv_defaultOption(&option);
   mjv_updateScene(&trace_.model(), &trace_.data(), &option, nullptr, &camera_, mjCAT_ALL,
                   &scene_.get());
+  DropUnseen();
   if (touch) TintTouched(*touch);
   AimShadows();
   drawing_.Render(scene_.get());

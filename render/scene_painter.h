@@ -36,6 +36,7 @@ class ScenePainter {
   Image Draw(EpisodeTime t);
 
  private:
+  void DropUnseen();
   void AimShadows();
   void TintTouched(const Touch& touch);
   void DrawContactBoxes(Overlay& overlay) const;

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kStep_s = 0.25;
 constexpr double kWatched_s = 3;
-constexpr double kBeforePassing_s = 1, kAfterPassing_s = 0.4;
-constexpr double kElevation_rad = -0.6;
+constexpr double kBeforePassing_s = 0.7, kAfterPassing_s = 0.4;
+constexpr double kElevations_rad[] = {-0.4, -0.6};
 constexpr int kNumDirections = 24;
 constexpr double kWeightVisibility = 2, kWeightPath = 1.5, kWeightSize = 0.5, kWeightAcross = 0.1;
 
@@ -217,8 +217,10 @@ CameraView ChooseView(const std::vector<TraceModel*>& traces, const Frustum& fru
   double least_distance_m = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kNumDirections; ++i) {
     const double azimuth_rad = 2 * std::numbers::pi * i / kNumDirections;
-    views.push_back(FitCamera(points, azimuth_rad, kElevation_rad, frustum));
-    least_distance_m = std::min(least_distance_m, views.back().distance_m);
+    for (const double elevation_rad : kElevations_rad) {
+      views.push_back(FitCamera(points, azimuth_rad, elevation_rad, frustum));
+      least_distance_m = std::min(least_distance_m, views.back().distance_m);
+    }
   }
   const std::vector<double> visibility = Visibility(Moments(traces), views);
   const Eigen::Vector3d travel = DirectionOfTravel(traces);

@@ -8,7 +8,7 @@
 namespace sidestep {
 
 /// Chooses one view for all traces, from what they show in their first 3 s: the arms throughout,
-/// everything that stands, and each obstacle from 1 s before until 0.4 s after it passes. Among
+/// everything that stands, and each obstacle from 0.7 s before until 0.4 s after it passes. Among
 /// views from all around and somewhat above, it takes the one in which the arms stand out most
 /// from the obstacles, the motions run across the picture, and everything is large.
 /// Moves the traces to other moments.
