@@ -122,7 +122,9 @@ class LineTransform {
   LowerEnvelope envelope_;
 };
 
-void CheckInput(const OccupancyGrid& occupancy) {
+}  // namespace
+
+void CheckTransformInput(const OccupancyGrid& occupancy) {
   CheckGridSpec(occupancy.spec);
   if (occupancy.cells.size() != occupancy.spec.num_cells()) {
     throw std::invalid_argument("distance transform: needs one value a cell");
@@ -134,11 +136,9 @@ void CheckInput(const OccupancyGrid& occupancy) {
   }
 }
 
-}  // namespace
-
 std::vector<std::int32_t> ComputeSquaredDistance(const OccupancyGrid& occupancy,
                                                  DistanceConvention convention) {
-  CheckInput(occupancy);
+  CheckTransformInput(occupancy);
   const std::ptrdiff_t nx = occupancy.spec.size[0];
   const std::ptrdiff_t ny = occupancy.spec.size[1];
   const std::ptrdiff_t nz = occupancy.spec.size[2];

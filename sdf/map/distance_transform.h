@@ -28,6 +28,11 @@ inline constexpr float kNoSurfaceDistance_m = 1000.0F;
 /// What ComputeSquaredDistance answers where there is no cell of the other kind.
 inline constexpr std::int32_t kNoOtherCell = std::numeric_limits<std::int32_t>::max();
 
+/// What every transform asks of its input.
+/// @throws std::invalid_argument for a bad spec, a number of cells that does not fit it, or a grid
+/// whose squared diagonal exceeds 2^28 cells (over 9000 cells along each axis).
+void CheckTransformInput(const OccupancyGrid& occupancy);
+
 /// The exact Euclidean distance transform of both kinds of cells in one pass: for each cell, the
 /// square of the distance to the nearest cell of the other kind (filled for a free cell, free for a
 /// filled one), in half cells. Cells outside the grid do not count as either. Linear in the number
@@ -38,13 +43,12 @@ inline constexpr std::int32_t kNoOtherCell = std::numeric_limits<std::int32_t>::
 /// Computing 8:415-428, 2012; in integers as A. Meijster, J. Roerdink, W. Hesselink, "A General
 /// Algorithm for Computing Distance Transforms in Linear Time", 2000.
 ///
-/// @throws std::invalid_argument for a bad spec, a number of cells that does not fit it, or a grid
-/// whose squared diagonal exceeds 2^28 cells (over 9000 cells along each axis).
+/// @throws as CheckTransformInput.
 std::vector<std::int32_t> ComputeSquaredDistance(const OccupancyGrid& occupancy,
                                                  DistanceConvention convention);
 
 /// The signed distance in metres: positive in free cells, negative in filled ones.
-/// @throws as ComputeSquaredDistance.
+/// @throws as CheckTransformInput.
 SdfGrid ComputeSignedDistance(const OccupancyGrid& occupancy,
                               DistanceConvention convention = DistanceConvention::kSurface);
 
