@@ -164,13 +164,16 @@ bool FastDistanceTransform::Workspace::Run(const OccupancyGrid& occupancy,
     std::fill_n(distance_m, occupancy.cells.size(), NoSurfaceDistance_m(options));
     return true;
   }
+  // From both ends inwards: a corner is furthest from everything, so if lanes are too narrow it
+  // shows at once.
+  const auto plane = [&](int i) {
+    const std::size_t half = static_cast<std::size_t>(i) / 2;
+    return i % 2 == 0 ? half : job.ny - 1 - half;
+  };
   std::atomic<bool> saturated = false;
-  ParallelFor(options.num_threads, static_cast<int>(job.ny), [&](int worker, int y) {
-    if (saturated) return;
-    if (!TransformPlane(job, MakeScratch(job, static_cast<std::size_t>(worker)),
-                        static_cast<std::size_t>(y))) {
-      saturated = true;
-    }
+  ParallelFor(options.num_threads, static_cast<int>(job.ny), [&](int worker, int i) {
+    const Scratch<Lane> scratch = MakeScratch(job, static_cast<std::size_t>(worker));
+    if (!saturated && !TransformPlane(job, scratch, plane(i))) saturated = true;
   });
   return !saturated;
 }
