@@ -30,7 +30,7 @@ int Run(int argc, char** argv) {
       "completed; 2 usage or bad input. `sidestep COMMAND --help` tells more.");
   sidestep::AddRunCommand(line);
   sidestep::AddCompareCommand(line);
-  // sidestep::AddRenderCommand(line);
+  sidestep::AddRenderCommand(line);
   sidestep::AddReproduceCommand(line);
   sidestep::AddListCommand(line);
   sidestep::AddDoctorCommand(line);

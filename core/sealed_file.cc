@@ -74,11 +74,11 @@ class TemporaryFile {
 void WriteSealedFile(const std::string& path, const SealedFormat& format,
                      std::span<const unsigned char> payload) {
   TemporaryFile temporary(path + "." + std::to_string(getpid()) + ".part");
-  const std::string head = MakeHead(format, payload);
+  std::string bytes = MakeHead(format, payload);
+  bytes.append(payload.begin(), payload.end());
   std::FILE* const file = std::fopen(temporary.path().c_str(), "wb");
   if (file == nullptr) FailToWrite(path);
-  const bool written = std::fwrite(head.data(), 1, head.size(), file) == head.size() &&
-                       std::fwrite(payload.data(), 1, payload.size(), file) == payload.size() &&
+  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size() &&
                        std::fflush(file) == 0 && fsync(fileno(file)) == 0;
   const int write_error = errno;
   const bool closed = std::fclose(file) == 0;
