@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "sdf/map/fast_distance_transform.h"
+
 namespace sidestep {
 namespace {
 
@@ -37,7 +39,7 @@ SdfGrid MakeObjectField(const OccupancyGrid& shape_O, double margin_m,
       }
     }
   }
-  return ComputeSignedDistance(padded, convention);
+  return FastDistanceTransform().Compute(padded, {.convention = convention});
 }
 
 SdfGrid MakeShapeField(const Shape& shape, double cell_m, double margin_m) {

@@ -10,7 +10,8 @@ void StaticMap::Set(const OccupancyGrid& occupancy) {
 
 std::shared_ptr<const SdfGrid> StaticMap::Field() {
   if (!field_) {
-    field_ = std::make_shared<const SdfGrid>(ComputeSignedDistance(occupancy_, convention_));
+    field_ = std::make_shared<const SdfGrid>(
+        transform_.Compute(occupancy_, {.convention = convention_}));
   }
   return field_;
 }

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "core/grid.h"
-#include "sdf/map/distance_transform.h"
+#include "sdf/map/fast_distance_transform.h"
 #include "sdf/map/sdf_grid.h"
 
 namespace sidestep {
@@ -22,6 +22,7 @@ class StaticMap {
  private:
   DistanceConvention convention_;
   OccupancyGrid occupancy_;
+  FastDistanceTransform transform_;
   std::shared_ptr<const SdfGrid> field_;  // null: not transformed since it changed
 };
 
