@@ -58,8 +58,7 @@ void Prefetch(const T* begin, const T* end) {
   for (; begin < end; begin += 64 / sizeof(T)) hwy::Prefetch(begin);
 }
 
-// --- One column
-// -----------------------------------------------------------------------------------
+// --- One column ----------------------------------------------------------------------------------
 
 // Offers source + cost(1), source + cost(2), ... to the `count` rows that follow `source` upwards
 // (direction 1) or downwards (-1), until none of a row's lanes takes one. Returns how many rows
@@ -159,8 +158,7 @@ hn::Vec<VectorTag<Lane>> Merge(const Lane* free_side, const Lane* filled_side, s
   return hn::IfThenElse(MaskOf(d, bits >> i), hn::Load(d, filled_side + i), value);
 }
 
-// --- Along x
-// --------------------------------------------------------------------------------------
+// --- Along x -------------------------------------------------------------------------------------
 
 // 64 cells as bits.
 inline std::uint64_t Pack64(const std::uint8_t* cells) {
@@ -180,7 +178,10 @@ inline std::uint64_t Pack64(const std::uint8_t* cells) {
 inline bool PackRow(const std::uint8_t* cells, std::size_t nx, std::uint64_t* bits) {
   std::uint64_t any = 0;
   const std::size_t whole = nx / 64;
-  for (std::size_t w = 0; w < whole; ++w) any |= bits[w] = Pack64(cells + w * 64);
+  for (std::size_t w = 0; w < whole; ++w) {
+    bits[w] = Pack64(cells + w * 64);
+    any |= bits[w];
+  }
   const std::size_t rest = nx % 64;
   if (rest > 0) {
     if (whole > 0) {
@@ -233,8 +234,7 @@ void TransformRow(const Job<Lane>& job, const std::uint64_t* bits, Lane* row) {
   }
 }
 
-// --- A slice: x and y
-// -----------------------------------------------------------------------------
+// --- A slice: x and y ----------------------------------------------------------------------------
 
 inline bool AnySet(const std::uint64_t* bits, std::size_t words) {
   return std::any_of(bits, bits + words, [](std::uint64_t word) { return word != 0; });
@@ -248,24 +248,34 @@ std::uint64_t ColumnBits(const std::uint64_t* bits, std::size_t column) {
   return bits[first / 64] >> first % 64 & ~std::uint64_t{0} >> (64 - kLanes);
 }
 
+// The address of the sums of row y of slice z.
 template <class Lane>
-void Slice(const Job<Lane>& job, const Scratch<Lane>& scratch, std::size_t z) {
-  constexpr std::size_t kLanes = kColumnLanes<Lane>;
-  const VectorTag<Lane> d;
-  const std::size_t words = job.words_per_row;
+Lane* SumsOf(const Job<Lane>& job, std::size_t y, std::size_t z) {
+  return job.sums + y * job.plane_pitch + z * job.num_columns * kColumnLanes<Lane>;
+}
+
+// The cells of a slice as bits. Returns whether any is set.
+template <class Lane>
+bool PackSlice(const Job<Lane>& job, std::size_t z, std::uint64_t* bits) {
   const std::uint8_t* cells = job.cells + z * job.ny * job.nx;
   bool any = false;
   for (std::size_t y = 0; y < job.ny; ++y) {
-    any |= PackRow(cells + y * job.nx, job.nx, scratch.bits + y * words);
+    any |= PackRow(cells + y * job.nx, job.nx, bits + y * job.words_per_row);
   }
-  job.slice_is_free[z] = !any;
-  if (!any) return;
+  return any;
+}
 
+// The pass along x of a slice, into the two sides of its columns.
+template <class Lane>
+void TransformRows(const Job<Lane>& job, const Scratch<Lane>& scratch, std::size_t z) {
+  constexpr std::size_t kLanes = kColumnLanes<Lane>;
+  const std::size_t words = job.words_per_row;
   const std::size_t column_size = job.ny * kLanes;
-  const std::uint64_t* row_bits = nullptr;  // What scratch.row holds the costs of.
+  const std::uint64_t* transformed = nullptr;  // The bits that scratch.row belongs to.
   for (std::size_t y = 0; y < job.ny; ++y) {
-    Lane* sums = job.sums + y * job.plane_pitch + z * job.num_columns * kLanes;
-    if (!job.bypass_cache) Prefetch(sums, sums + job.num_columns * kLanes);
+    if (!job.bypass_cache) {
+      Prefetch(SumsOf(job, y, z), SumsOf(job, y, z) + job.num_columns * kLanes);
+    }
     const std::uint64_t* bits = scratch.bits + y * words;
     Lane* free_side = scratch.free_side + y * kLanes;
     Lane* filled_side = scratch.filled_side + y * kLanes;
@@ -275,31 +285,31 @@ void Slice(const Job<Lane>& job, const Scratch<Lane>& scratch, std::size_t z) {
       }
       continue;
     }
-    if (row_bits == nullptr || !std::equal(bits, bits + words, row_bits)) {
+    if (transformed == nullptr || !std::equal(bits, bits + words, transformed)) {
       TransformRow(job, bits, scratch.row);
-      row_bits = bits;
+      transformed = bits;
     }
     for (std::size_t c = 0; c < job.num_columns; ++c) {
       Split(scratch.row + c * kLanes, ColumnBits<Lane>(bits, c), free_side + c * column_size,
             filled_side + c * column_size);
     }
   }
+}
 
-  for (std::size_t c = 0; c < job.num_columns; ++c) {
-    for (std::size_t y = 0; y < job.ny; ++y) {
-      scratch.column_bits[y] = ColumnBits<Lane>(scratch.bits + y * words, c);
-    }
-    TransformColumn(job, scratch, scratch.free_side + c * column_size, job.ny);
-    TransformFilledSide(job, scratch, scratch.filled_side + c * column_size, job.ny);
-  }
+// Puts the two sides of a slice's columns together, row by row.
+template <class Lane>
+void WriteSums(const Job<Lane>& job, const Scratch<Lane>& scratch, std::size_t z) {
+  constexpr std::size_t kLanes = kColumnLanes<Lane>;
+  const VectorTag<Lane> d;
   for (std::size_t y = 0; y < job.ny; ++y) {
-    const std::uint64_t* bits = scratch.bits + y * words;
-    Lane* sums = job.sums + y * job.plane_pitch + z * job.num_columns * kLanes;
+    const std::uint64_t* bits = scratch.bits + y * job.words_per_row;
+    Lane* sums = SumsOf(job, y, z);
     for (std::size_t c = 0; c < job.num_columns; ++c) {
-      const std::size_t from = c * column_size + y * kLanes;
+      const std::uint64_t column_bits = ColumnBits<Lane>(bits, c);
+      const std::size_t from = (c * job.ny + y) * kLanes;
       for (std::size_t i = 0; i < kLanes; i += kPerVector<Lane>) {
-        const auto sum = Merge(scratch.free_side + from, scratch.filled_side + from,
-                               ColumnBits<Lane>(bits, c), i);
+        const auto sum =
+            Merge(scratch.free_side + from, scratch.filled_side + from, column_bits, i);
         if (job.bypass_cache) {
           hn::Stream(sum, d, sums + c * kLanes + i);
         } else {
@@ -307,13 +317,28 @@ void Slice(const Job<Lane>& job, const Scratch<Lane>& scratch, std::size_t z) {
         }
       }
     }
-    std::copy_n(bits, words, job.bits + (y * job.nz + z) * words);
+    std::copy_n(bits, job.words_per_row, job.bits + (y * job.nz + z) * job.words_per_row);
   }
   if (job.bypass_cache) hwy::FlushStream();
 }
 
-// --- A plane: z and the distances
-// -----------------------------------------------------------------
+template <class Lane>
+void Slice(const Job<Lane>& job, const Scratch<Lane>& scratch, std::size_t z) {
+  job.slice_is_free[z] = !PackSlice(job, z, scratch.bits);
+  if (job.slice_is_free[z]) return;
+  TransformRows(job, scratch, z);
+  const std::size_t column_size = job.ny * kColumnLanes<Lane>;
+  for (std::size_t c = 0; c < job.num_columns; ++c) {
+    for (std::size_t y = 0; y < job.ny; ++y) {
+      scratch.column_bits[y] = ColumnBits<Lane>(scratch.bits + y * job.words_per_row, c);
+    }
+    TransformColumn(job, scratch, scratch.free_side + c * column_size, job.ny);
+    TransformFilledSide(job, scratch, scratch.filled_side + c * column_size, job.ny);
+  }
+  WriteSums(job, scratch, z);
+}
+
+// --- A plane: z and the distances ----------------------------------------------------------------
 
 // As many floats as a vector holds doubles.
 using FloatTag = hn::Rebind<float, hn::ScalableTag<double>>;
@@ -420,50 +445,63 @@ void WriteDistances(const Job<Lane>& job, const ToDistance<Lane>& to_distance, c
   write_part(end, job.nx);
 }
 
+// Column c of plane y before the pass along z, split in its two sides.
 template <class Lane>
-bool Plane(const Job<Lane>& job, const Scratch<Lane>& scratch, std::size_t y) {
+void ReadColumn(const Job<Lane>& job, const Scratch<Lane>& scratch, std::size_t y, std::size_t c) {
   constexpr std::size_t kLanes = kColumnLanes<Lane>;
-  const VectorTag<Lane> d;
-  const std::size_t words = job.words_per_row;
-  const std::size_t row_pitch = job.num_columns * kLanes;
-  const Lane* sums = job.sums + y * job.plane_pitch;
-  const std::uint64_t* bits = job.bits + y * job.nz * words;
-  for (std::size_t c = 0; c < job.num_columns; ++c) {
-    for (std::size_t z = 0; z < job.nz; ++z) {
-      if (!job.bypass_cache) {
-        const float* row = job.distance_m + (z * job.ny + y) * job.nx;
-        Prefetch(row + c * kLanes, row + std::min((c + 1) * kLanes, job.nx));
-      }
-      scratch.column_bits[z] = job.slice_is_free[z] ? 0 : ColumnBits<Lane>(bits + z * words, c);
-      if (job.slice_is_free[z]) {
-        FillRow(job.costs.far, scratch.free_side + z * kLanes);
-      } else {
-        Split(sums + z * row_pitch + c * kLanes, scratch.column_bits[z],
-              scratch.free_side + z * kLanes, scratch.filled_side + z * kLanes);
-      }
+  const std::uint64_t* bits = job.bits + y * job.nz * job.words_per_row;
+  for (std::size_t z = 0; z < job.nz; ++z) {
+    if (!job.bypass_cache) {
+      const float* out = job.distance_m + (z * job.ny + y) * job.nx;
+      Prefetch(out + c * kLanes, out + std::min((c + 1) * kLanes, job.nx));
     }
-    TransformColumn(job, scratch, scratch.free_side, job.nz);
-    TransformFilledSide(job, scratch, scratch.filled_side, job.nz);
-    for (std::size_t i = 0; i < kLanes; i += kPerVector<Lane>) {
-      auto largest = hn::Zero(d);
-      for (std::size_t z = 0; z < job.nz; ++z) {
-        const auto sum = Merge(scratch.free_side + z * kLanes, scratch.filled_side + z * kLanes,
-                               scratch.column_bits[z], i);
-        hn::Store(sum, d, scratch.plane + z * row_pitch + c * kLanes + i);
-        largest = hn::Max(largest, sum);
-      }
-      const std::size_t x = c * kLanes + i;
-      if (job.may_saturate && x < job.nx) {
-        const auto is_far = hn::Eq(largest, hn::Set(d, job.costs.far));
-        if (!hn::AllFalse(d, hn::And(is_far, hn::FirstN(d, job.nx - x)))) return false;
-      }
+    if (job.slice_is_free[z]) {
+      scratch.column_bits[z] = 0;
+      FillRow(job.costs.far, scratch.free_side + z * kLanes);
+    } else {
+      scratch.column_bits[z] = ColumnBits<Lane>(bits + z * job.words_per_row, c);
+      Split(SumsOf(job, y, z) + c * kLanes, scratch.column_bits[z], scratch.free_side + z * kLanes,
+            scratch.filled_side + z * kLanes);
     }
   }
+}
+
+// Puts its two sides together in scratch.plane. Returns whether a sum saturated.
+template <class Lane>
+bool WriteColumn(const Job<Lane>& job, const Scratch<Lane>& scratch, std::size_t c) {
+  constexpr std::size_t kLanes = kColumnLanes<Lane>;
+  const VectorTag<Lane> d;
+  for (std::size_t i = 0; i < kLanes; i += kPerVector<Lane>) {
+    auto largest = hn::Zero(d);
+    for (std::size_t z = 0; z < job.nz; ++z) {
+      const auto sum = Merge(scratch.free_side + z * kLanes, scratch.filled_side + z * kLanes,
+                             scratch.column_bits[z], i);
+      hn::Store(sum, d, scratch.plane + (z * job.num_columns + c) * kLanes + i);
+      largest = hn::Max(largest, sum);
+    }
+    const std::size_t x = c * kLanes + i;
+    if (job.may_saturate && x < job.nx) {
+      const auto is_far = hn::Eq(largest, hn::Set(d, job.costs.far));
+      if (!hn::AllFalse(d, hn::And(is_far, hn::FirstN(d, job.nx - x)))) return true;
+    }
+  }
+  return false;
+}
+
+template <class Lane>
+bool Plane(const Job<Lane>& job, const Scratch<Lane>& scratch, std::size_t y) {
+  for (std::size_t c = 0; c < job.num_columns; ++c) {
+    ReadColumn(job, scratch, y, c);
+    TransformColumn(job, scratch, scratch.free_side, job.nz);
+    TransformFilledSide(job, scratch, scratch.filled_side, job.nz);
+    if (WriteColumn(job, scratch, c)) return false;
+  }
   const ToDistance<Lane> to_distance(job);
+  const std::size_t row_pitch = job.num_columns * kColumnLanes<Lane>;
   for (std::size_t z = 0; z < job.nz; ++z) {
-    const bool any_filled = !job.slice_is_free[z] && AnySet(bits + z * words, words);
-    WriteDistances(job, to_distance, scratch.plane + z * row_pitch,
-                   any_filled ? bits + z * words : nullptr,
+    const std::uint64_t* bits = job.bits + (y * job.nz + z) * job.words_per_row;
+    const bool any_filled = !job.slice_is_free[z] && AnySet(bits, job.words_per_row);
+    WriteDistances(job, to_distance, scratch.plane + z * row_pitch, any_filled ? bits : nullptr,
                    job.distance_m + (z * job.ny + y) * job.nx);
   }
   if (job.bypass_cache) hwy::FlushStream();

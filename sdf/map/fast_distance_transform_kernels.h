@@ -16,12 +16,11 @@
 /// squared distance in half cells, as in ComputeSquaredDistance. But any costs will do whose sums
 /// are ordered as the squares are, and lanes of 8 and 16 bits reach furthest with small ones:
 ///
-///  - kBwdist: k^2, so that 8 bits reach 15 cells and 16 bits 255.
-///  - kSurface: the squares are (2k - 1)^2 = 8 T(k) + 1 with the triangular number T = k (k - 1) /
-///  2,
-///    and 0 for k = 0. A sum over the axes is 8 T + n, where T is a sum of triangular numbers and
-///    n = 1, 2 or 3 the number of axes with k > 0. The sums 3 T + n come in the same order. So the
-///    cost is 3 T(k) + 1; 8 bits reach 13 cells and 16 bits 209.
+///  - kBwdist: cost k^2. 8 bits reach 15 cells, 16 bits 255.
+///  - kSurface: the squares are 0 for k = 0, else (2k - 1)^2 = 8 T + 1 with the triangular number
+///    T = k (k - 1) / 2. A sum over the axes is 8 T + n, where T is the sum of theirs and n = 1, 2
+///    or 3 the number of axes with k > 0. The sums 3 T + n come in the same order, so the cost is
+///    3 T + 1. 8 bits reach 13 cells, 16 bits 209.
 ///
 /// SquaredHalfCells() takes them back.
 ///
@@ -39,8 +38,8 @@
 /// # One signed pass
 /// Each cell looks for the other kind of cell. Among the sources of a free cell, filled cells count
 /// as 0, and the other way round. So a line is split in two, each with its own kind of cells and 0
-/// elsewhere, and these are transformed alone: the *free side* and the *filled side*. Most lines
-/// have no filled cell, and then no filled side.
+/// elsewhere, and each is transformed alone: the *free side* and the *filled side*. Most lines have
+/// no filled cell, and then no filled side.
 ///
 /// # The grid
 /// Along x, the costs are written from tables, run by run of equal cells. TransformSlice does that

@@ -50,8 +50,7 @@ constexpr DistanceConvention kConventions[] = {DistanceConvention::kSurface,
                                                DistanceConvention::kBwdist};
 constexpr int kLaneBits[] = {8, 16, 32};
 
-// --- Grids
-// ----------------------------------------------------------------------------------------
+// --- Grids ---------------------------------------------------------------------------------------
 
 using Size = std::array<int, 3>;
 
@@ -125,8 +124,7 @@ std::vector<Case> Cases() {
   return cases;
 }
 
-// --- Truth
-// ----------------------------------------------------------------------------------------
+// --- Truth ---------------------------------------------------------------------------------------
 
 std::vector<float> Clamped(std::vector<float> distance_m, double max_distance_m) {
   const float limit = static_cast<float>(max_distance_m);
@@ -190,8 +188,7 @@ std::vector<float> Compute(FastDistanceTransform& transform, const OccupancyGrid
   return ::testing::AssertionSuccess();
 }
 
-// --- Every instruction set
-// ------------------------------------------------------------------------
+// --- Every instruction set -----------------------------------------------------------------------
 
 class FastDistanceTransformOn : public ::testing::TestWithParam<std::int64_t> {
  protected:
@@ -261,8 +258,7 @@ std::string TargetName(const ::testing::TestParamInfo<std::int64_t>& test) {
 INSTANTIATE_TEST_SUITE_P(Target, FastDistanceTransformOn,
                          ::testing::ValuesIn(hwy::SupportedAndGeneratedTargets()), TargetName);
 
-// --- The rest
-// -------------------------------------------------------------------------------------
+// --- The rest ------------------------------------------------------------------------------------
 
 TEST(FastDistanceTransform, IsTheSameOnAnyNumberOfThreads) {
   const OccupancyGrid grid = Random({70, 45, 50}, 0.003);
