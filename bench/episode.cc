@@ -39,7 +39,8 @@ PlannerSettings MakePlannerSettings(const Scenario& scenario) {
   settings.sigma_obs = scenario.sigma_obs;
   settings.num_interpolated = scenario.num_interpolated;
   settings.qc = scenario.qc;
-  settings.limit_scale = scenario.limit_scale;
+  settings.velocity_scale = scenario.velocity_scale;
+  settings.acceleration_scale = scenario.acceleration_scale;
   settings.max_iterations = scenario.max_iterations;
   settings.position_limits = scenario.position_limits;
   settings.velocity_limits = scenario.velocity_limits;

@@ -20,6 +20,16 @@ int Complain(const std::string& message, int exit_code) {
   return exit_code;
 }
 
+// CLI11 would only say that a command is missing.
+void CheckCommandName(const CLI::App& app, const std::string& name) {
+  std::string known;
+  for (const CLI::App* const command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_name() == name) return;
+    known += (known.empty() ? "" : ", ") + command->get_name();
+  }
+  throw sidestep::InputError("sidestep", "no command '" + name + "' (there are: " + known + ")");
+}
+
 int Run(int argc, char** argv) {
   sidestep::CommandLine line;
   line.app.name("sidestep");
@@ -34,6 +44,7 @@ int Run(int argc, char** argv) {
   sidestep::AddReproduceCommand(line);
   sidestep::AddListCommand(line);
   sidestep::AddDoctorCommand(line);
+  if (argc > 1 && argv[1][0] != '-') CheckCommandName(line.app, argv[1]);
   try {
     line.app.parse(argc, argv);
   } catch (const CLI::Success& help) {

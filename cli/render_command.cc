@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/number_range.h"
 #include "core/input_error.h"
 #include "core/recording.h"
 #include "render/comparison.h"
@@ -124,12 +125,12 @@ void AddRenderCommand(CommandLine& line) {
   render
       ->add_option("--at", options->at_s,
                    "The still's moment [s] [the first contact, else the least clearance]")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(NumberFrom(0.0, 1e6));
   render->add_option("--size", options->size, "WIDTHxHEIGHT of the whole picture [1280x720]");
   render->add_option("--fps", options->frames_per_second, "Frames a second of video [30]")
-      ->check(CLI::Range(1, 240));
+      ->check(NumberFrom(1, 240));
   render->add_option("--speed", options->playback_speed, "Playback speed, 0.5 is half [1]")
-      ->check(CLI::Range(0.001, 1000.0));
+      ->check(NumberFrom(0.001, 1000.0));
   render->add_option("--camera", options->camera, "A camera of the model [chosen to fit]");
   render->add_option("--title", options->titles,
                      "A title for each trace [what its planner was told]");

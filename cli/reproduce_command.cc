@@ -17,6 +17,7 @@
 #include "bench/result_file.h"
 #include "cli/command.h"
 #include "cli/data_paths.h"
+#include "cli/number_range.h"
 #include "core/input_error.h"
 #include "sdf/prediction/registry.h"
 
@@ -210,13 +211,13 @@ void AddReproduceCommand(CommandLine& line) {
     command->add_option("--published", options->published,
                         "Compare with this CSV file, row by row; exit 1 if a count differs");
     command->add_option("--sigma-obs", options->sigma_obs, "Sigma of the obstacle cost")
-        ->check(CLI::Range(1e-6, 1e6));
+        ->check(NumberFrom(1e-6, 1e6));
     command->add_option("--epsilon", options->epsilon_m, "Safety margin of the obstacle cost [m]")
-        ->check(CLI::Range(0.0, 10.0));
+        ->check(NumberFrom(0.0, 10.0));
     command
         ->add_option("--n-int", options->num_interpolated,
                      "Obstacle costs between two support states")
-        ->check(CLI::Range(0, 1000));
+        ->check(NumberFrom(0, 1000));
     command->add_option("--speeds", options->speeds, "FIRST:LAST:STEP, or one speed [m/s]");
     command->add_option("--pairs", options->pairs, "Pairs of start and goal, as 1,4-6 [all]");
     command->add_option("--case", options->cases,
@@ -228,7 +229,7 @@ void AddReproduceCommand(CommandLine& line) {
                       "Solve static and full_knowledge once only, as the paper's text says");
     command->add_flag("--intended-geometry", options->intended_geometry,
                       "Static boxes where they were meant to be, not one cell low");
-    command->add_option("-j,--jobs", options->num_jobs, "Threads")->check(CLI::Range(1, 1024));
+    command->add_option("-j,--jobs", options->num_jobs, "Threads")->check(NumberFrom(1, 1024));
     command->add_option("--out", options->out, "Folder for rows.csv [out/" + name + "]");
     command->callback(
         [&line, name, options] { line.exit_code = RunOpenLoopExperiment(name, *options); });

@@ -8,6 +8,7 @@
 #include "bench/result_file.h"
 #include "bench/statistics.h"
 #include "cli/command.h"
+#include "cli/number_range.h"
 #include "cli/versions.h"
 #include "cli/wiring.h"
 #include "core/input_error.h"
@@ -86,14 +87,14 @@ void AddRunCommand(CommandLine& line) {
                   "full_knowledge");
   run->add_option("--predictor", overrides.predictor, "How objects are extrapolated");
   run->add_option("--speed", overrides.speed_m_s, "Speed of every moving obstacle [m/s]")
-      ->check(CLI::Range(0.0, 100.0));
+      ->check(NumberFrom(0.0, 100.0));
   run->add_option("--seed", overrides.seed, "Seed of everything random")
-      ->check(CLI::Range(0, 2147483647));
+      ->check(NumberFrom(0, 2147483647));
   run->add_option("--latency-ms", overrides.latency_ms,
                   "Episode time charged to each planning cycle [ms]")
-      ->check(CLI::Range(0.0, 60000.0));
+      ->check(NumberFrom(0.0, 60000.0));
   run->add_option("--epsilon", overrides.epsilon_m, "Safety margin of the obstacle cost [m]")
-      ->check(CLI::Range(0.0, 10.0));
+      ->check(NumberFrom(0.0, 10.0));
   run->add_option("--out", options->out, "Folder for the results [out/SCENARIO/KNOWLEDGE]");
   run->add_flag("--json", options->json, "Print result.json instead of the summary");
   run->callback([&line, options] { line.exit_code = Run(*options); });

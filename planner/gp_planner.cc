@@ -12,8 +12,8 @@ namespace sidestep {
 namespace {
 
 // Weights of the limit costs [1/rad, s/rad, s^2/rad]. In the walkway scene at 1.2 to 2.0 m/s plans
-// exceed the scaled limits by at most 2 % of the limit, which limit_scale leaves room for; ten
-// times the weights take two to three times the iterations for the same plans.
+// exceed the scaled limits by at most 2 % of the limit, which the scales leave room for; ten times
+// the weights take two to three times the iterations for the same plans.
 constexpr double kPositionWeight = 1000;
 constexpr double kVelocityWeight = 30;
 constexpr double kAccelerationWeight = 5;
@@ -67,7 +67,7 @@ PlanResult GpPlanner::Solve(const PlanRequest& request, const Trajectory& guess,
     first_stage =
         SolveByLevenbergMarquardt(problem.problem(), settings_.max_iterations, kColdTolerance);
   }
-  problem.AddLimits(limits, settings_.limit_scale);
+  problem.AddLimits(limits, settings_.velocity_scale, settings_.acceleration_scale);
   const SolveOutcome outcome = SolveByLevenbergMarquardt(
       problem.problem(), settings_.max_iterations, settings_.function_tolerance);
 

@@ -8,6 +8,7 @@
 #include "planner/costs/acceleration_limit_cost.h"
 #include "planner/costs/gp_prior_cost.h"
 #include "planner/costs/interpolated_obstacle_cost.h"
+#include "planner/costs/mid_velocity_limit_cost.h"
 #include "planner/costs/obstacle_cost.h"
 #include "planner/costs/state_limit_cost.h"
 #include "planner/costs/state_prior_cost.h"
@@ -79,16 +80,17 @@ GpProblem::GpProblem(const RobotModel& robot, const PlanRequest& request, const 
   }
 }
 
-void GpProblem::AddLimits(const LimitWeights& weights, double scale) {
+void GpProblem::AddLimits(const LimitWeights& weights, double velocity_scale,
+                          double acceleration_scale) {
   const int n = robot_.num_joints(), K = static_cast<int>(t_s_.size());
   Eigen::VectorXd lower(2 * n), upper(2 * n), weight(2 * n), a_max(n);
   for (int i = 0; i < n; ++i) {
     const JointLimits& limits = robot_.limits()[i];
     lower(i) = std::min({limits.q_min + kPositionMargin_rad, q_start_(i), q_goal_(i)});
     upper(i) = std::max({limits.q_max - kPositionMargin_rad, q_start_(i), q_goal_(i)});
-    upper(n + i) = scale * limits.v_max;
+    upper(n + i) = velocity_scale * limits.v_max;
     lower(n + i) = -upper(n + i);
-    a_max(i) = scale * limits.a_max;
+    a_max(i) = acceleration_scale * limits.a_max;
   }
   weight << Eigen::VectorXd::Constant(n, weights.position),
       Eigen::VectorXd::Constant(n, weights.velocity);
@@ -98,13 +100,19 @@ void GpProblem::AddLimits(const LimitWeights& weights, double scale) {
     const ceres::CostFunction* const cost = costs_.back().get();
     for (int k = first_free_; k < K; ++k) AddTerm(cost, k, &PlanCost::limits);
   }
-  if (weights.acceleration > 0) {
-    costs_.push_back(std::make_unique<AccelerationLimitCost>(
-        step_s_, a_max, Eigen::VectorXd::Constant(n, weights.acceleration)));
-    const ceres::CostFunction* const cost = costs_.back().get();
+  const auto add_to_intervals = [&](std::unique_ptr<ceres::CostFunction> cost) {
+    costs_.push_back(std::move(cost));
     for (int k = std::max(0, first_free_ - 1); k + 1 < K; ++k) {
-      AddTerm(cost, k, &PlanCost::limits);
+      AddTerm(costs_.back().get(), k, &PlanCost::limits);
     }
+  };
+  if (weights.velocity > 0) {
+    add_to_intervals(
+        std::make_unique<MidVelocityLimitCost>(step_s_, upper.tail(n), weight.tail(n)));
+  }
+  if (weights.acceleration > 0) {
+    add_to_intervals(std::make_unique<AccelerationLimitCost>(
+        step_s_, a_max, Eigen::VectorXd::Constant(n, weights.acceleration)));
   }
 }
 

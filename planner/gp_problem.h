@@ -45,9 +45,10 @@ class GpProblem {
   GpProblem(const RobotModel& robot, const PlanRequest& request, const Trajectory& initial,
             const GpProblemOptions& options);
 
-  /// Adds costs that keep every free state and interval within `scale` of the robot's velocity and
-  /// acceleration limits, and 0.02 rad within its position limits unless start or goal lie closer.
-  void AddLimits(const LimitWeights& weights, double scale);
+  /// Adds costs that keep every free state and interval within the given fractions of the robot's
+  /// velocity and acceleration limits, and 0.02 rad within its position limits unless start or goal
+  /// lie closer.
+  void AddLimits(const LimitWeights& weights, double velocity_scale, double acceleration_scale);
 
   /// For a solver. The parameter blocks are the columns of states(); blocks of fixed states that
   /// are constants take part only where a free neighbour needs them.

@@ -13,6 +13,8 @@ void Require(bool condition, const std::string& what) {
 
 bool IsPositive(double value) { return std::isfinite(value) && value > 0; }
 
+bool IsFraction(double value) { return value > 0 && value <= 1; }
+
 }  // namespace
 
 void CheckPlannerSettings(const PlannerSettings& settings) {
@@ -21,7 +23,8 @@ void CheckPlannerSettings(const PlannerSettings& settings) {
   Require(settings.num_interpolated >= 0, "num_interpolated must be >= 0");
   Require(IsPositive(settings.qc), "qc must be > 0");
   Require(IsPositive(settings.sigma_goal), "sigma_goal must be > 0");
-  Require(settings.limit_scale > 0 && settings.limit_scale <= 1, "limit_scale must be in (0, 1]");
+  Require(IsFraction(settings.velocity_scale), "velocity_scale must be in (0, 1]");
+  Require(IsFraction(settings.acceleration_scale), "acceleration_scale must be in (0, 1]");
   Require(settings.max_iterations >= 1, "max_iterations must be >= 1");
   Require(IsPositive(settings.function_tolerance), "function_tolerance must be > 0");
 }

@@ -12,8 +12,11 @@ struct PlannerSettings {
   bool velocity_limits = true;
   bool acceleration_limits = true;
   bool position_limits = true;
-  /// Fraction of the robot's velocity and acceleration limits to plan within, (0, 1].
-  double limit_scale = 0.95;
+  /// Fractions of the robot's limits to plan within, (0, 1]. What the plan leaves of the velocity,
+  /// corrections may use; what it leaves of the acceleration keeps a compliant arm on its plan, and
+  /// libfranka's rate limits away.
+  double velocity_scale = 0.95;
+  double acceleration_scale = 0.5;
   int max_iterations = 50;  ///< of one solve
   double function_tolerance = 1e-4;
 };

@@ -65,7 +65,8 @@ struct Scenario {
   std::vector<MovingObstacle> moving_obstacles;
 
   std::string planner;
-  double epsilon_m = 0, sigma_obs = 0, qc = 1, limit_scale = 1;
+  double epsilon_m = 0, sigma_obs = 0, qc = 1;
+  double velocity_scale = 1, acceleration_scale = 1;
   int num_interpolated = 0, max_iterations = 0;
   bool velocity_limits = true, acceleration_limits = true, position_limits = true;
 

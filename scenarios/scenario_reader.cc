@@ -199,8 +199,13 @@ void ReadPlanner(const YamlReader& top, Scenario& scenario) {
   };
   const auto flag = [&](const char* key) { return map.Has(key) ? map.GetBool(key) : true; };
   scenario.qc = number("qc", 1.0);
-  scenario.limit_scale = number("limit_scale", 0.95);
-  if (scenario.limit_scale > 1) map.Fail("limit_scale", "must be at most 1");
+  const auto fraction = [&](const char* key, double otherwise) {
+    const double value = number(key, otherwise);
+    if (value > 1) map.Fail(key, "must be at most 1");
+    return value;
+  };
+  scenario.velocity_scale = fraction("velocity_scale", 0.95);
+  scenario.acceleration_scale = fraction("acceleration_scale", 0.5);
   scenario.max_iterations = map.Has("max_iterations") ? map.GetInt("max_iterations") : 50;
   if (scenario.max_iterations < 1 || scenario.max_iterations > 100000) {
     map.Fail("max_iterations", "must be from 1 to 100000");

@@ -124,7 +124,8 @@ std::string ToYaml(const Scenario& scenario) {
   line("  sigma_obs: " + Number(scenario.sigma_obs));
   line("  n_int: " + std::to_string(scenario.num_interpolated));
   line("  qc: " + Number(scenario.qc));
-  line("  limit_scale: " + Number(scenario.limit_scale));
+  line("  velocity_scale: " + Number(scenario.velocity_scale));
+  line("  acceleration_scale: " + Number(scenario.acceleration_scale));
   line("  max_iterations: " + std::to_string(scenario.max_iterations));
   line(std::string("  position_limits: ") + Word(scenario.position_limits));
   line(std::string("  velocity_limits: ") + Word(scenario.velocity_limits));

@@ -209,7 +209,7 @@ const std::vector<ModuleRule>& ModuleRules() {
       {"planner", {"core", "robot", "sdf"}, {"ceres/", "ompl/", "hwy/"}},
       {"control", {"core", "robot"}, {}},
       {"scenarios", {"core"}, {}},
-      {"sim", {"core", "robot", "control", "scenarios"}, {"mujoco/", "fcl/", "tinyxml2.h"}},
+      {"sim", {"core", "robot", "control", "scenarios"}, {"mujoco/", "tinyxml2.h"}},
       {"hardware",
        {"core", "robot", "control"},
        {"franka/", "librealsense2/", "apriltag/", "opencv2/"}},

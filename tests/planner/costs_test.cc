@@ -12,6 +12,7 @@
 #include "planner/costs/acceleration_limit_cost.h"
 #include "planner/costs/gp_prior_cost.h"
 #include "planner/costs/interpolated_obstacle_cost.h"
+#include "planner/costs/mid_velocity_limit_cost.h"
 #include "planner/costs/obstacle_cost.h"
 #include "planner/costs/state_limit_cost.h"
 #include "planner/costs/state_prior_cost.h"
@@ -64,6 +65,10 @@ std::unique_ptr<ceres::CostFunction> Acceleration(World&) {
   return std::make_unique<AccelerationLimitCost>(kStep_s, Eigen::Vector2d(10, 4),
                                                  Eigen::Vector2d(100, 50));
 }
+std::unique_ptr<ceres::CostFunction> MidVelocity(World&) {
+  return std::make_unique<MidVelocityLimitCost>(kStep_s, Eigen::Vector2d(0.5, 0.3),
+                                                Eigen::Vector2d(100, 50));
+}
 
 std::vector<Case> Cases() {
   using Eigen::Vector4d;
@@ -95,6 +100,8 @@ std::vector<Case> Cases() {
       {"VelocityBothWays", Limit, {Vector4d(0, 0, 2.4, -2.2)}},
       // Both ends of the interval too fast, in opposite senses.
       {"AccelerationBothEnds", Acceleration, {Vector4d(0, 0, 0, 0), Vector4d(0.05, -0.03, 0, 0.1)}},
+      {"MidVelocityBothWays", MidVelocity, {Vector4d(0, 0, 0.1, 0), Vector4d(0.05, -0.03, 0, 0.1)}},
+      {"MidVelocityOneJoint", MidVelocity, {Vector4d(0, 0, 0.1, 0), Vector4d(0.01, -0.03, 0, 0.1)}},
       {"AccelerationOneEnd", Acceleration, {Vector4d(0, 0, 0, 0), Vector4d(0.04, 0.001, 0.6, 0)}},
   };
 }
@@ -172,6 +179,23 @@ TEST(AccelerationLimitCost, IsTheExcessOfTheCubicAtBothEnds) {
     EXPECT_GT(std::abs(a0(i)), a_max(i));
     EXPECT_NEAR(residuals(i), weight(i) * (std::abs(a0(i)) - a_max(i)), 1e-9);
     EXPECT_NEAR(residuals(2 + i), weight(i) * std::max(0.0, std::abs(a1(i)) - a_max(i)), 1e-9);
+  }
+}
+
+TEST(MidVelocityLimitCost, IsTheExcessOfTheCubicInTheMiddle) {
+  const Trajectory trajectory{Eigen::Vector2d(0, kStep_s),
+                              (Eigen::MatrixXd(2, 2) << 0, 0.05, 0, -0.03).finished(),
+                              (Eigen::MatrixXd(2, 2) << 0.1, 0.2, 0, 0.1).finished()};
+  World world;
+  const Eigen::VectorXd residuals =
+      Residuals(*MidVelocity(world),
+                {(Eigen::VectorXd(4) << trajectory.q.col(0), trajectory.v.col(0)).finished(),
+                 (Eigen::VectorXd(4) << trajectory.q.col(1), trajectory.v.col(1)).finished()});
+  const Eigen::VectorXd v = Sample(trajectory, HorizonOffset(kStep_s / 2)).v;
+  const Eigen::Vector2d v_max(0.5, 0.3), weight(100, 50);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_GT(std::abs(v(i)), v_max(i));
+    EXPECT_NEAR(residuals(i), weight(i) * (std::abs(v(i)) - v_max(i)), 1e-9);
   }
 }
 

@@ -120,7 +120,8 @@ TEST_P(EveryPlanner, RefusesSettingsOutOfRange) {
       [](PlannerSettings& s) { s.num_interpolated = -1; },
       [](PlannerSettings& s) { s.qc = kNaN; },
       [](PlannerSettings& s) { s.sigma_goal = 0; },
-      [](PlannerSettings& s) { s.limit_scale = 1.1; },
+      [](PlannerSettings& s) { s.velocity_scale = 1.1; },
+      [](PlannerSettings& s) { s.acceleration_scale = 0; },
       [](PlannerSettings& s) { s.max_iterations = 0; },
       [](PlannerSettings& s) { s.function_tolerance = -1; },
   };

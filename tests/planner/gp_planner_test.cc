@@ -88,7 +88,7 @@ TEST_F(GpPlannerTest, KeepsWithinLimitsThatTheFreeOptimumBreaks) {
   PlanRequest request = Request(nothing_);
   request.num_states = 20;  // 1.9 s for 2.3 rad: 1.82 rad/s at the peak of the cubic
   PlannerSettings settings;
-  settings.limit_scale = 0.8;  // 1.6 rad/s
+  settings.velocity_scale = settings.acceleration_scale = 0.8;  // 1.6 rad/s
   const PlanResult result = GpPlanner(arm_, settings).Plan(request);
   const LimitUse without = GpPlanner(arm_, WithoutLimits()).Plan(request).limit_use;
   EXPECT_GT(without.velocity, 0.9);

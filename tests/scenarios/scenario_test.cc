@@ -51,8 +51,8 @@ moving_obstacles:
                           speed_m_s: 0.1}}}
   - {name: c, shape: {ellipsoid: {semi_axes_m: [0.1, 0.2, 0.3]}},
      motion: {linear: {start_m: [0, 0, 0], direction: [0, 0, 1], speed_m_s: 0}}}
-planner: {name: gpmp, epsilon_m: 0.1, sigma_obs: 0.2, n_int: 19, qc: 2, limit_scale: 0.5,
-          max_iterations: 7, velocity_limits: false}
+planner: {name: gpmp, epsilon_m: 0.1, sigma_obs: 0.2, n_int: 19, qc: 2, velocity_scale: 0.75,
+          acceleration_scale: 0.25, max_iterations: 7, velocity_limits: false}
 knowledge: static
 predictor: stationary
 replanning: {rate_hz: 4, latency_s: 0.07}
@@ -65,6 +65,8 @@ seed: 42
   EXPECT_LT((again.X_WB.rotation().coeffs() - scenario.X_WB.rotation().coeffs()).norm(), 1e-15);
   EXPECT_EQ(again.q_goal, scenario.q_goal);
   EXPECT_EQ(again.num_interpolated, 19);
+  EXPECT_EQ(again.velocity_scale, 0.75);
+  EXPECT_EQ(again.acceleration_scale, 0.25);
   EXPECT_EQ(again.max_iterations, 7);
   EXPECT_FALSE(again.velocity_limits);
   EXPECT_TRUE(again.acceleration_limits);

@@ -1,0 +1,119 @@
+// The command line as a person meets it: help, mistakes, exit codes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/subprocess.h"
+
+namespace sidestep {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+Finished Sidestep(std::vector<std::string> arguments,
+                  const std::vector<std::string>& environment = {}) {
+  arguments.insert(arguments.begin(), SIDESTEP_PROGRAM);
+  return RunProgram(arguments, environment);
+}
+
+struct Mistake {
+  const char* name;
+  std::vector<std::string> arguments;
+  std::vector<std::string> says;  // parts of the one line
+};
+std::ostream& operator<<(std::ostream& stream, const Mistake& m) { return stream << m.name; }
+
+class Mistakes : public ::testing::TestWithParam<Mistake> {};
+
+TEST_P(Mistakes, GetOneLineAndExitCodeTwo) {
+  const Finished finished = Sidestep(GetParam().arguments);
+  EXPECT_EQ(finished.exit_code, 2);
+  EXPECT_EQ(finished.out, "");
+  EXPECT_EQ(std::count(finished.err.begin(), finished.err.end(), '\n'), 1) << finished.err;
+  for (const std::string& part : GetParam().says) EXPECT_THAT(finished.err, HasSubstr(part));
+}
+
+const std::string kBad = SIDESTEP_SOURCE_DIR "/tests/data/bad_scenarios/";
+
+INSTANTIATE_TEST_SUITE_P(
+    Typical, Mistakes,
+    ::testing::Values(
+        Mistake{"NoCommand", {}, {"subcommand"}}, Mistake{"UnknownCommand", {"fly"}, {"fly"}},
+        Mistake{"NoScenario", {"run"}, {"SCENARIO"}},
+        Mistake{"UnknownScenario", {"run", "hsr_walkaway"}, {"hsr_walkaway", "hsr_walkway"}},
+        Mistake{"MissingFile", {"run", "./nowhere.yaml"}, {"./nowhere.yaml: no such file"}},
+        Mistake{"Folder", {"run", "/"}, {"/: is a directory"}},
+        Mistake{"UnknownFlag", {"run", "hsr_walkway", "--sped", "1"}, {"--sped"}},
+        Mistake{"UnknownKnowledge",
+                {"run", "hsr_walkway", "--knowledge", "oracle"},
+                {"--knowledge: must be one of static,", "'oracle'"}},
+        Mistake{"UnknownPredictor",
+                {"run", "hsr_walkway", "--predictor", "crystal_ball"},
+                {"--predictor: must be one of", "'crystal_ball'"}},
+        Mistake{"NegativeSpeed", {"run", "hsr_walkway", "--speed", "-1"}, {"--speed"}},
+        Mistake{"SpeedIsAWord", {"run", "hsr_walkway", "--speed", "fast"}, {"--speed", "fast"}},
+        Mistake{"SpeedIsNotANumber", {"run", "hsr_walkway", "--speed", "nan"}, {"--speed"}},
+        Mistake{"NegativeSeed", {"run", "hsr_walkway", "--seed", "-3"}, {"--seed"}},
+        Mistake{"NegativeEpsilon", {"run", "hsr_walkway", "--epsilon", "-0.1"}, {"--epsilon"}},
+        Mistake{"LatencyBeyondHorizon",
+                {"run", "hsr_walkway", "--latency-ms", "4000"},
+                {"--latency-ms: must not exceed the horizon"}},
+        Mistake{"OutIsAFile",
+                {"run", "hsr_walkway", "--out", SIDESTEP_PROGRAM},
+                {"--out", "cannot be made a folder"}},
+        Mistake{
+            "BadFile",
+            {"run", kBad + "negative_radius.yaml"},
+            {"negative_radius.yaml:19: moving_obstacles[1].shape.sphere.radius_m: must be > 0"}},
+        Mistake{"CompareNothing", {"compare"}, {"DIR"}},
+        Mistake{"CompareNowhere", {"compare", "/nowhere"}, {"/nowhere/result.json: no such file"}},
+        Mistake{"RenderNothing", {"render"}, {"TRACE"}}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+TEST(Help, NamesEveryCommandAndTheExitCodes) {
+  const Finished finished = Sidestep({"--help"});
+  EXPECT_EQ(finished.exit_code, 0);
+  EXPECT_THAT(finished.out, AllOf(HasSubstr("run"), HasSubstr("compare"), HasSubstr("render"),
+                                  HasSubstr("list"), HasSubstr("doctor"), HasSubstr("Exit codes")));
+  for (const char* const command : {"run", "compare", "render", "list", "doctor"}) {
+    const Finished help = Sidestep({command, "--help"});
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_THAT(help.out, HasSubstr(command));
+  }
+}
+
+TEST(List, ShowsWhatCanBeNamed) {
+  const Finished finished = Sidestep({"list"});
+  EXPECT_EQ(finished.exit_code, 0);
+  EXPECT_THAT(finished.out, AllOf(HasSubstr("hsr_walkway"), HasSubstr("full_knowledge"),
+                                  HasSubstr("gpmp"), HasSubstr("two_frame")));
+}
+
+TEST(Doctor, FindsNothingMissingWhereTheTestsRun) {
+  const Finished finished = Sidestep({"doctor"});
+  EXPECT_EQ(finished.exit_code, 0) << finished.out;
+  EXPECT_THAT(finished.out, AllOf(HasSubstr("mujoco"), HasSubstr("rendering")));
+}
+
+TEST(Doctor, NamesTheRemedyForAGlThatIsNotThere) {
+  const Finished finished = Sidestep({"doctor"}, {"MUJOCO_GL=glfw"});
+  EXPECT_EQ(finished.exit_code, 1);
+  EXPECT_THAT(finished.out,
+              AllOf(HasSubstr("MISSING"), HasSubstr("MUJOCO_GL"), HasSubstr("remedy")));
+}
+
+TEST(Data, FromAFolderThatHoldsNoneIsRefused) {
+  const Finished finished = Sidestep({"list"}, {"SIDESTEP_DATA_DIR=/nowhere"});
+  EXPECT_EQ(finished.exit_code, 2);
+  EXPECT_THAT(finished.err, StartsWith("SIDESTEP_DATA_DIR: "));
+}
+
+}  // namespace
+}  // namespace sidestep

@@ -1,0 +1,62 @@
+#include "tests/support/subprocess.h"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace sidestep {
+namespace {
+
+std::string Slurp(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+Finished RunProgram(const std::vector<std::string>& command,
+                    const std::vector<std::string>& environment,
+                    const std::string& working_directory) {
+  // Files, not pipes: a pipe that nobody empties stops the program.
+  std::string name = (std::filesystem::temp_directory_path() / "sidestep_run_XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+  const std::filesystem::path folder = name;
+  const std::string out = folder / "out", err = folder / "err";
+  std::vector<char*> arguments;
+  for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+
+  const pid_t child = fork();
+  if (child < 0) throw std::runtime_error("cannot fork");
+  if (child == 0) {
+    for (const std::string& assignment : environment) putenv(const_cast<char*>(assignment.c_str()));
+    const bool moved = working_directory.empty() || chdir(working_directory.c_str()) == 0;
+    const int out_file = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    const int err_file = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    const int no_input = open("/dev/null", O_RDONLY);
+    dup2(no_input, STDIN_FILENO);
+    dup2(out_file, STDOUT_FILENO);
+    dup2(err_file, STDERR_FILENO);
+    if (moved) execvp(arguments[0], arguments.data());
+    _exit(127);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  Finished finished;
+  finished.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  finished.out = Slurp(out);
+  finished.err = Slurp(err);
+  std::filesystem::remove_all(folder);
+  if (finished.exit_code == 127) throw std::runtime_error("cannot run " + command.at(0));
+  return finished;
+}
+
+}  // namespace sidestep
