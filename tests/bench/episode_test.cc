@@ -1,0 +1,162 @@
+// The loop itself, with a robot that has no inertia: what it does when, and what it makes of it.
+#include "bench/episode.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "tests/bench/kinematic_world.h"
+#include "tests/support/planar_arm.h"
+
+namespace sidestep {
+namespace {
+
+// The planar arm swings by 1.6 rad; a ball crosses its way, from below at the tip's half way.
+Scenario MakeScenario() {
+  return ParseScenario(R"(
+description: A planar arm swings past a ball
+robot: {model: planar_arm, base: {position_m: [0, 0, 0]}}
+task: {start: [-0.8, 0], goal: [0.8, 0]}
+horizon: {duration_s: 2.0, step_s: 0.1}
+workspace: {first_center_m: [-0.3, -1.5, -0.2], cell_m: 0.05, cells: [36, 60, 9]}
+floor_m: -2
+static_boxes: []
+moving_obstacles:
+  - {name: ball, shape: {sphere: {radius_m: 0.12}},
+     motion: {linear: {start_m: [0.9, -1.3, 0], direction: [0, 1, 0], speed_m_s: 1.3}}}
+planner: {name: gpmp, epsilon_m: 0.1, sigma_obs: 0.05, n_int: 1}
+knowledge: prediction
+predictor: two_frame
+replanning: {rate_hz: 10, latency_s: 0.1}
+sensor: {name: occupancy, rate_hz: 30}
+seed: 1
+)",
+                       "loop.yaml");
+}
+
+class Episode : public ::testing::Test {
+ protected:
+  EpisodeResult Run() { return RunEpisode(scenario_, arm_, world_.Factory()); }
+
+  RobotModel arm_ = MakePlanarArm();
+  Scenario scenario_ = MakeScenario();
+  KinematicWorld world_;
+};
+
+TEST_F(Episode, ReachesTheGoalInTimeAndTouchesNothing) {
+  const EpisodeResult result = Run();
+  EXPECT_EQ(result.outcome, Outcome::kGoal);
+  EXPECT_LE(result.recording.metrics.at("time_to_goal_s"), scenario_.horizon_s);
+  EXPECT_GT(result.recording.metrics.at("min_clearance_m"), 0);
+}
+
+TEST_F(Episode, WithoutKnowingThatTheBallMovesItIsACollisionAndGoesOn) {
+  scenario_.knowledge = "static";
+  const EpisodeResult result = Run();
+  EXPECT_EQ(result.outcome, Outcome::kCollision);
+  EXPECT_GT(result.recording.control.back().t.seconds(),
+            result.recording.metrics.at("first_contact_s") + 0.3);
+}
+
+TEST_F(Episode, EndsHalfASecondAfterTheGoal) {
+  const EpisodeResult result = Run();
+  EXPECT_NEAR(result.recording.control.back().t.seconds(),
+              result.recording.metrics.at("time_to_goal_s") + 0.5, 0.0015);
+}
+
+TEST_F(Episode, OfARobotThatDoesNotMoveEndsAtTwiceTheHorizon) {
+  world_.moves = false;
+  scenario_.moving_obstacles.clear();
+  const EpisodeResult result = Run();
+  EXPECT_EQ(result.outcome, Outcome::kTimeout);
+  EXPECT_TRUE(std::isnan(result.recording.metrics.at("time_to_goal_s")));
+  EXPECT_NEAR(result.recording.control.back().t.seconds(), 4.0, 0.0015);
+}
+
+TEST_F(Episode, OfARobotThatSeesNothingGetsNoPlan) {
+  world_.sees = false;
+  scenario_.moving_obstacles.clear();
+  const EpisodeResult result = Run();
+  EXPECT_EQ(result.outcome, Outcome::kPlannerFailed);
+  EXPECT_TRUE(result.recording.cycles.empty());
+  EXPECT_TRUE(world_.submissions.empty());
+}
+
+TEST_F(Episode, WithoutATruthIsJudgedByTheGoalAlone) {
+  world_.judges = false;
+  const EpisodeResult result = Run();
+  EXPECT_EQ(result.outcome, Outcome::kGoal);
+  EXPECT_TRUE(result.recording.truth.empty());
+  EXPECT_TRUE(std::isnan(result.recording.metrics.at("min_clearance_m")));
+}
+
+struct Timing {
+  double rate_hz, latency_s, period_s;
+};
+std::ostream& operator<<(std::ostream& stream, const Timing& timing) {
+  return stream << timing.rate_hz << " Hz, " << timing.latency_s << " s";
+}
+
+class EpisodeTiming : public Episode, public ::testing::WithParamInterface<Timing> {};
+
+TEST_P(EpisodeTiming, PlansAtTheRateOrAsSoonAsTheLatencyIsOver) {
+  scenario_.replan_rate_hz = GetParam().rate_hz;
+  scenario_.latency_s = GetParam().latency_s;
+  const EpisodeResult result = Run();
+  ASSERT_GT(result.recording.cycles.size(), 5u);
+  for (std::size_t i = 0; i < result.recording.cycles.size(); ++i) {
+    const CycleRecord& cycle = result.recording.cycles[i];
+    EXPECT_NEAR(cycle.t.seconds(), static_cast<double>(i) * GetParam().period_s, 1e-9);
+    EXPECT_NEAR((cycle.t_effect - cycle.t).seconds(), GetParam().latency_s, 1e-9);
+  }
+}
+
+TEST_P(EpisodeTiming, TellsTheRobotOnlyWhenTheLatencyIsOver) {
+  scenario_.replan_rate_hz = GetParam().rate_hz;
+  scenario_.latency_s = GetParam().latency_s;
+  const EpisodeResult result = Run();
+  std::size_t told = 0;
+  for (const CycleRecord& cycle : result.recording.cycles) {
+    if (!cycle.accepted || told == world_.submissions.size()) continue;
+    EXPECT_NEAR(world_.submissions[told].when.seconds(), cycle.t_effect.seconds(), 0.0011);
+    EXPECT_EQ(world_.submissions[told].start, cycle.plan_start);
+    ++told;
+  }
+  EXPECT_EQ(told, world_.submissions.size());
+}
+
+TEST_P(EpisodeTiming, NeverAsksForAJumpOfPositionOrVelocity) {
+  scenario_.replan_rate_hz = GetParam().rate_hz;
+  scenario_.latency_s = GetParam().latency_s;
+  const EpisodeResult result = Run();
+  const std::vector<ControlSample>& control = result.recording.control;
+  const double tick_s = 0.001, a_max = 10;  // of the planar arm
+  for (std::size_t i = 1; i < control.size(); ++i) {
+    const Eigen::VectorXd dv = control[i].v - control[i - 1].v;
+    const Eigen::VectorXd dq =
+        control[i].q - control[i - 1].q - tick_s / 2 * (control[i].v + control[i - 1].v);
+    EXPECT_LT(dv.cwiseAbs().maxCoeff(), 1.05 * a_max * tick_s) << control[i].t.seconds();
+    EXPECT_LT(dq.cwiseAbs().maxCoeff(), 1e-5) << control[i].t.seconds();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(RateAndLatency, EpisodeTiming,
+                         ::testing::Values(Timing{10, 0.1, 0.1}, Timing{10, 0, 0.1},
+                                           Timing{10, 0.03, 0.1}, Timing{10, 0.25, 0.3},
+                                           Timing{4, 0.1, 0.25}, Timing{30, 0.1, 0.1}));
+
+TEST_F(Episode, IsTheSameTwice) {
+  const EpisodeResult a = Run(), b = Run();
+  ASSERT_EQ(a.recording.control.size(), b.recording.control.size());
+  for (std::size_t i = 0; i < a.recording.control.size(); ++i) {
+    ASSERT_EQ(a.recording.control[i].q, b.recording.control[i].q);
+  }
+  for (const auto& [name, value] : a.recording.metrics) {
+    const double again = b.recording.metrics.at(name);
+    EXPECT_TRUE(value == again || (std::isnan(value) && std::isnan(again))) << name;
+  }
+}
+
+}  // namespace
+}  // namespace sidestep

@@ -1,0 +1,216 @@
+#include "tests/bench/kinematic_world.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "core/shape.h"
+#include "core/trajectory.h"
+
+namespace sidestep {
+namespace {
+
+constexpr int kTicksPerSecond = 1000, kTicksPerSample = 10;
+
+struct Solid {
+  Shape shape;
+  Pose X_OW;
+};
+
+double Distance(const std::vector<Solid>& solids, const Eigen::Vector3d& p_W) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Solid& solid : solids) {
+    least = std::min(least, SignedDistance(solid.shape, solid.X_OW * p_W));
+  }
+  return least;
+}
+
+// The scenario's shapes at any time.
+class Shapes {
+ public:
+  explicit Shapes(const Scenario& scenario) : scenario_(scenario) {}
+
+  std::vector<ObjectObservation> MovingAt(EpisodeTime t) const {
+    std::vector<ObjectObservation> obstacles;
+    for (const MovingObstacle& obstacle : scenario_.moving_obstacles) {
+      ObjectObservation& seen = obstacles.emplace_back();
+      seen.id = obstacle.name;
+      seen.t = t;
+      seen.X_WO = PoseAt(obstacle, t);
+      seen.shape = obstacle.shape;
+    }
+    return obstacles;
+  }
+
+  // Everything solid at one moment.
+  std::vector<Solid> SolidsAt(EpisodeTime t) const {
+    std::vector<Solid> solids;
+    for (const MovingObstacle& obstacle : scenario_.moving_obstacles) {
+      solids.push_back({obstacle.shape, PoseAt(obstacle, t).Inverse()});
+    }
+    for (const StaticBox& box : scenario_.static_boxes) {
+      solids.push_back({Box{box.size_m}, box.X_WO.Inverse()});
+    }
+    return solids;
+  }
+
+ private:
+  const Scenario& scenario_;
+};
+
+class Robot final : public RobotInterface {
+ public:
+  Robot(KinematicWorld& world, const Eigen::VectorXd& q) : world_(world), q_(q) {
+    v_ = a_ = Eigen::VectorXd::Zero(q.size());
+  }
+
+  EpisodeTime now() const { return EpisodeTime(static_cast<double>(ticks_) / kTicksPerSecond); }
+  const std::vector<ControlSample>& history() const { return history_; }
+
+  JointState Read() const override { return {now(), q_, v_}; }
+
+  void Submit(const Trajectory& trajectory, EpisodeTime start) override {
+    world_.submissions.push_back({now(), start});
+    trajectory_ = trajectory;
+    start_ = start;
+  }
+
+  void Hold() override { trajectory_.reset(); }
+
+  void AdvanceTo(EpisodeTime t) override {
+    while (now().seconds() < t.seconds() - 1e-9) Tick();
+  }
+
+  std::vector<ControlSample> TakeControlLog() override {
+    const auto begin = history_.begin() + static_cast<std::ptrdiff_t>(taken_);
+    std::vector<ControlSample> log(begin, history_.end());
+    taken_ = history_.size();
+    return log;
+  }
+
+ private:
+  void Tick() {
+    if (trajectory_ && world_.moves && now() >= start_) {
+      const TrajectoryPoint point = Sample(*trajectory_, now() - start_);
+      q_ = point.q;
+      v_ = point.v;
+      a_ = point.a;
+    }
+    history_.push_back({now(), q_, v_, a_, q_, v_, Eigen::VectorXd::Zero(q_.size())});
+    ++ticks_;
+  }
+
+  KinematicWorld& world_;
+  std::int64_t ticks_ = 0;
+  std::size_t taken_ = 0;
+  Eigen::VectorXd q_, v_, a_;
+  std::optional<Trajectory> trajectory_;
+  EpisodeTime start_;
+  std::vector<ControlSample> history_;
+};
+
+// Sees the centre of every filled cell.
+class CellSensor final : public Sensor {
+ public:
+  CellSensor(const KinematicWorld& world, const Scenario& scenario)
+      : world_(world), scenario_(scenario), shapes_(scenario) {}
+
+  EpisodeTime NextCapture() const override {
+    return EpisodeTime(world_.sees ? num_scans_ / scenario_.sensor_rate_hz
+                                   : std::numeric_limits<double>::infinity());
+  }
+
+  std::optional<Scan> Read() override {
+    const EpisodeTime t = NextCapture();
+    ++num_scans_;
+    const std::vector<Solid> solids = shapes_.SolidsAt(t);
+    std::vector<Eigen::Vector3d> points;
+    const auto [nx, ny, nz] = scenario_.grid.size;
+    for (int k = 0; k < nz; ++k) {
+      for (int j = 0; j < ny; ++j) {
+        for (int i = 0; i < nx; ++i) {
+          const Eigen::Vector3d p_W = scenario_.grid.Center(i, j, k);
+          if (Distance(solids, p_W) <= 0) points.push_back(p_W);
+        }
+      }
+    }
+    Scan scan{t, Pose(), Eigen::Matrix3Xd(3, points.size())};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      scan.p_CP.col(static_cast<Eigen::Index>(i)) = points[i];
+    }
+    return scan;
+  }
+
+ private:
+  const KinematicWorld& world_;
+  const Scenario& scenario_;
+  Shapes shapes_;
+  int num_scans_ = 0;
+};
+
+// Judges by the robot's spheres, the mounted one left out.
+class SphereTruth final : public WorldTruth {
+ public:
+  SphereTruth(const Robot& robot, const RobotModel& model, const Scenario& scenario)
+      : robot_(robot), model_(model), shapes_(scenario) {}
+
+  std::vector<ObjectObservation> ObstaclesAt(EpisodeTime t) const override {
+    return shapes_.MovingAt(t);
+  }
+
+  std::vector<TruthSample> TakeSamples() override {
+    std::vector<TruthSample> samples;
+    for (; judged_ < robot_.history().size(); judged_ += kTicksPerSample) {
+      const ControlSample& tick = robot_.history()[judged_];
+      TruthSample& sample = samples.emplace_back();
+      sample.t = tick.t;
+      sample.clearance_m = std::numeric_limits<double>::infinity();
+      const std::vector<Solid> solids = shapes_.SolidsAt(tick.t);
+      const SphereCenters centers = model_.ComputeSphereCenters(tick.q, false);
+      for (Eigen::Index s = 1; s < centers.p_WS.cols(); ++s) {
+        const double distance_m = Distance(solids, centers.p_WS.col(s));
+        sample.clearance_m = std::min(sample.clearance_m, distance_m - model_.sphere_radii_m()(s));
+      }
+      sample.in_contact = sample.clearance_m <= 0;
+      if (sample.in_contact) sample.contact_s = tick.t.seconds();
+      for (const ObjectObservation& o : ObstaclesAt(tick.t)) sample.X_WO.push_back(o.X_WO);
+    }
+    return samples;
+  }
+
+ private:
+  const Robot& robot_;
+  const RobotModel& model_;
+  Shapes shapes_;
+  std::size_t judged_ = 0;
+};
+
+struct Stage {
+  Stage(KinematicWorld& world, const Scenario& scenario, const RobotModel& model)
+      : robot(world, scenario.q_start), sensor(world, scenario), truth(robot, model, scenario) {}
+  Robot robot;
+  CellSensor sensor;
+  SphereTruth truth;
+};
+
+}  // namespace
+
+WorldFactory KinematicWorld::Factory() {
+  return [this](const Scenario& scenario, const RobotModel& model) {
+    const auto stage = std::make_shared<Stage>(*this, scenario, model);
+    EpisodeWorld world;
+    world.owner = stage;
+    world.robot = &stage->robot;
+    world.sensor = &stage->sensor;
+    if (judges) world.truth = &stage->truth;
+    for (const MovingObstacle& obstacle : scenario.moving_obstacles) {
+      world.obstacles.push_back(obstacle.name);
+    }
+    return world;
+  };
+}
+
+}  // namespace sidestep
