@@ -5,6 +5,7 @@
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "bench/metrics/registry.h"
 #include "bench/statistics.h"
@@ -16,6 +17,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json NumberOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json ValueOf(const Metric& metric, double value) {
+  if (std::string(metric.unit) == "count") return Json(std::llround(value));
+  return NumberOrNull(value);
+}
 
 Json StageTable(const StageTimes& times) {
   Json table = Json::object();
@@ -52,7 +58,7 @@ std::string ResultJson(const EpisodeResult& result, const Scenario& scenario,
   json["obstacle_speeds_m_s"] = speeds;
   json["outcome"] = ToString(result.outcome);
   for (const Metric& metric : Metrics()) {
-    json[metric.name] = NumberOrNull(result.recording.metrics.at(metric.name));
+    json[metric.name] = ValueOf(metric, result.recording.metrics.at(metric.name));
   }
   json["versions"] = versions;
   json["wall_clock"] = {{"episode_s", result.wall_s}, {"cycle_cpu", StageTable(result.times)}};

@@ -22,8 +22,8 @@ constexpr std::array kMetrics = {
     Metric{"tracking_error_rad", "rad", true, "largest joint distance from command to motion",
            &TrackingError},
     Metric{"velocity_use", "1", true, "largest commanded velocity over its limit", &VelocityUse},
-    Metric{"replans", "1", false, "planning cycles run", &Replans},
-    Metric{"plans_accepted", "1", false, "plans given to the robot", &PlansAccepted},
+    Metric{"replans", "count", false, "planning cycles run", &Replans},
+    Metric{"plans_accepted", "count", false, "plans given to the robot", &PlansAccepted},
 };
 
 }  // namespace

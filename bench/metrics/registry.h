@@ -10,7 +10,7 @@ namespace sidestep {
 /// One number about an episode, from its recording alone. NaN where it does not apply.
 struct Metric {
   const char* name;  ///< with its unit as a suffix, as in result files
-  const char* unit;
+  const char* unit;  ///< "1" for a ratio, "count" for a whole number
   bool lower_is_better;
   const char* meaning;  ///< one line
   double (*compute)(const Recording&);

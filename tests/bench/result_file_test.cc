@@ -63,6 +63,14 @@ TEST_F(ResultFile, KeepsEverythingThatMayDifferUnderOneKey) {
   EXPECT_EQ(a, b);
 }
 
+TEST_F(ResultFile, WritesCountsAsWholeNumbers) {
+  EpisodeResult result = SomeResult();
+  result.recording.metrics["replans"] = 35;
+  const auto json = nlohmann::json::parse(ResultJson(result, SomeScenario(), {}));
+  EXPECT_TRUE(json["replans"].is_number_integer());
+  EXPECT_EQ(json["replans"], 35);
+}
+
 TEST_F(ResultFile, OfAnotherKindIsRefused) {
   EXPECT_EQ(Complaint(), path_ + ": no such file, or it cannot be read");
   for (const char* const text : {"", "{", "[]", "{\"format\": 3}", "{\"format\": \"other\"}"}) {
