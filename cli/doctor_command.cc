@@ -8,6 +8,7 @@
 #include "cli/data_paths.h"
 #include "cli/versions.h"
 #include "render/gl_context.h"
+#include "render/video_writer.h"
 #include "robot/robot_model.h"
 #include "scenarios/scenario.h"
 
@@ -60,12 +61,22 @@ void CheckGl(Report& report) {
   }
 }
 
+void CheckVideo(Report& report) {
+  const std::string encoder = VideoEncoder();
+  if (encoder.empty()) {
+    report.Bad("video", "libavcodec has no H.264 encoder", "install Debian's libavcodec59");
+  } else {
+    report.Good("video", encoder);
+  }
+}
+
 int Diagnose() {
   Report report;
   for (const auto& [part, version] : Versions()) report.Good(part, version);
   report.Good("processors", std::to_string(std::thread::hardware_concurrency()));
   CheckData(report);
   CheckGl(report);
+  CheckVideo(report);
   return report.num_bad() == 0 ? 0 : 1;
 }
 

@@ -194,6 +194,15 @@ void VideoWriter::Finish() {
   encoder.finished = true;
 }
 
+std::string VideoEncoder() {
+  const AVCodec* const x264 = avcodec_find_encoder_by_name("libx264");
+  if (x264 == nullptr) return "";
+  const unsigned version = avcodec_version();
+  return std::string(x264->name) + ", libavcodec " + std::to_string(AV_VERSION_MAJOR(version)) +
+         "." + std::to_string(AV_VERSION_MINOR(version)) + "." +
+         std::to_string(AV_VERSION_MICRO(version));
+}
+
 void WritePng(const Image& image, const std::string& path) {
   const AVCodec* const png = avcodec_find_encoder(AV_CODEC_ID_PNG);
   if (png == nullptr) throw InputError(path, "cannot be encoded: this libavcodec has no PNG");

@@ -30,6 +30,9 @@ class VideoWriter {
   std::unique_ptr<Encoder> encoder_;
 };
 
+/// The H.264 encoder and its library, e.g. "libx264, libavcodec 59.37.100"; empty if there is none.
+std::string VideoEncoder();
+
 /// Writes one image as PNG. @throws InputError if it cannot be written.
 void WritePng(const Image& image, const std::string& path);
 

@@ -92,14 +92,16 @@ TEST(Help, NamesEveryCommandAndTheExitCodes) {
 TEST(List, ShowsWhatCanBeNamed) {
   const Finished finished = Sidestep({"list"});
   EXPECT_EQ(finished.exit_code, 0);
-  EXPECT_THAT(finished.out, AllOf(HasSubstr("hsr_walkway"), HasSubstr("full_knowledge"),
-                                  HasSubstr("gpmp"), HasSubstr("two_frame")));
+  EXPECT_THAT(finished.out,
+              AllOf(HasSubstr("hsr_walkway"), HasSubstr("full_knowledge"), HasSubstr("gpmp"),
+                    HasSubstr("two_frame"), HasSubstr("panda"), HasSubstr("min_clearance_m")));
 }
 
 TEST(Doctor, FindsNothingMissingWhereTheTestsRun) {
   const Finished finished = Sidestep({"doctor"});
   EXPECT_EQ(finished.exit_code, 0) << finished.out;
-  EXPECT_THAT(finished.out, AllOf(HasSubstr("mujoco"), HasSubstr("rendering")));
+  EXPECT_THAT(finished.out,
+              AllOf(HasSubstr("mujoco"), HasSubstr("rendering"), HasSubstr("libx264")));
 }
 
 TEST(Doctor, NamesTheRemedyForAGlThatIsNotThere) {
