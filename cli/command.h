@@ -18,5 +18,6 @@ void AddCompareCommand(CommandLine& line);
 void AddRenderCommand(CommandLine& line);
 void AddReproduceCommand(CommandLine& line);
 void AddDoctorCommand(CommandLine& line);
+void AddManualCommand(CommandLine& line);
 
 }  // namespace sidestep

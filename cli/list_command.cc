@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -6,6 +7,7 @@
 #include "bench/metrics/registry.h"
 #include "cli/command.h"
 #include "cli/data_paths.h"
+#include "core/input_error.h"
 #include "planner/registry.h"
 #include "robot/robot_model.h"
 #include "scenarios/scenario.h"
@@ -16,40 +18,77 @@
 namespace sidestep {
 namespace {
 
-void PrintWords(const char* title, const std::vector<std::string>& words) {
-  std::printf("%s\n", title);
-  for (const std::string& word : words) std::printf("  %s\n", word.c_str());
+struct Kind {
+  const char* title;
+  std::vector<std::string> (*names)(const DataPaths&);
+};
+
+std::vector<std::string> KnowledgeNames(const DataPaths&) {
+  std::vector<std::string> names;
+  for (const Knowledge knowledge : kAllKnowledge) names.push_back(ToString(knowledge));
+  return names;
 }
 
-int List() {
+const Kind kKinds[] = {
+    {"scenarios", [](const DataPaths& paths) { return ScenarioNames(paths.scenarios); }},
+    {"robots", [](const DataPaths& paths) { return RobotModel::ListNames(paths.models); }},
+    {"knowledge", &KnowledgeNames},
+    {"planners", [](const DataPaths&) { return PlannerNames(); }},
+    {"predictors", [](const DataPaths&) { return PredictorNames(); }},
+    {"sensors", [](const DataPaths&) { return SensorNames(); }},
+    {"metrics",
+     [](const DataPaths&) {
+       std::vector<std::string> names;
+       for (const Metric& metric : Metrics()) names.emplace_back(metric.name);
+       return names;
+     }},
+};
+
+// Every name with its kind; scenarios and metrics with what they are.
+int ListAll() {
   const DataPaths paths = FindDataPaths();
-  std::printf("scenarios\n");
+  std::map<std::string, std::string> notes;
   for (const std::string& name : ScenarioNames(paths.scenarios)) {
-    const Scenario scenario = LoadScenario(paths.scenarios + "/" + name + ".yaml");
-    std::printf("  %-24s %s\n", name.c_str(), scenario.description.c_str());
+    notes[name] = LoadScenario(paths.scenarios + "/" + name + ".yaml").description;
   }
-  PrintWords("robots", RobotModel::ListNames(paths.models));
-  std::printf("knowledge\n");
-  for (const Knowledge knowledge : kAllKnowledge)
-    std::printf("  %s\n", ToString(knowledge).c_str());
-  PrintWords("planners", PlannerNames());
-  PrintWords("predictors", PredictorNames());
-  PrintWords("sensors", SensorNames());
-  std::printf("metrics\n");
   for (const Metric& metric : Metrics()) {
-    std::printf("  %-24s %s [%s]\n", metric.name, metric.meaning, metric.unit);
+    notes[metric.name] = metric.meaning + std::string(" [") + metric.unit + "]";
+  }
+  for (const Kind& kind : kKinds) {
+    std::printf("%s\n", kind.title);
+    for (const std::string& name : kind.names(paths)) {
+      const auto note = notes.find(name);
+      if (note == notes.end()) {
+        std::printf("  %s\n", name.c_str());
+      } else {
+        std::printf("  %-24s %s\n", name.c_str(), note->second.c_str());
+      }
+    }
   }
   return 0;
+}
+
+int ListNames(const std::string& kind_name) {
+  std::string known;
+  for (const Kind& kind : kKinds) {
+    known += (known.empty() ? "" : ", ") + std::string(kind.title);
+    if (kind_name != kind.title) continue;
+    for (const std::string& name : kind.names(FindDataPaths())) std::printf("%s\n", name.c_str());
+    return 0;
+  }
+  throw InputError("KIND", "must be one of " + known + ", is '" + kind_name + "'");
 }
 
 }  // namespace
 
 void AddListCommand(CommandLine& line) {
+  auto kind = std::make_shared<std::string>();
   CLI::App* const list =
       line.app.add_subcommand("list",
                               "List what can be named: scenarios, robots, knowledge, planners, "
                               "predictors, sensors, metrics");
-  list->callback([&line] { line.exit_code = List(); });
+  list->add_option("KIND", *kind, "Only the names of this kind, one a line, for scripts");
+  list->callback([&line, kind] { line.exit_code = kind->empty() ? ListAll() : ListNames(*kind); });
 }
 
 }  // namespace sidestep

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "cli/command.h"
+#include "cli/command_tree.h"
 #include "cli/versions.h"
 #include "core/input_error.h"
 
@@ -23,8 +24,9 @@ int Complain(const std::string& message, int exit_code) {
 // CLI11 would only say that a command is missing.
 void CheckCommandName(const CLI::App& app, const std::string& name) {
   std::string known;
-  for (const CLI::App* const command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    if (command->get_name() == name) return;
+  const auto is_named = [&](const CLI::App* command) { return command->get_name() == name; };
+  if (!app.get_subcommands(is_named).empty()) return;
+  for (const CLI::App* const command : sidestep::Commands(app)) {
     known += (known.empty() ? "" : ", ") + command->get_name();
   }
   throw sidestep::InputError("sidestep", "no command '" + name + "' (there are: " + known + ")");
@@ -37,13 +39,17 @@ int Run(int argc, char** argv) {
   line.app.require_subcommand(1);
   line.app.footer(
       "Exit codes: 0 done, whatever the outcome of the run; 1 a gate failed or a run could not be\n"
-      "completed; 2 usage or bad input. `sidestep COMMAND --help` tells more.");
+      "completed; 2 usage or bad input. `sidestep COMMAND --help` tells more.\n"
+      "Environment: SIDESTEP_DATA_DIR is a folder with models/ and scenarios/, used instead of "
+      "the\n"
+      "installed ones; MUJOCO_GL may only be osmesa, or not set.");
   sidestep::AddRunCommand(line);
   sidestep::AddCompareCommand(line);
   sidestep::AddRenderCommand(line);
   sidestep::AddReproduceCommand(line);
   sidestep::AddListCommand(line);
   sidestep::AddDoctorCommand(line);
+  sidestep::AddManualCommand(line);
   if (argc > 1 && argv[1][0] != '-') CheckCommandName(line.app, argv[1]);
   try {
     line.app.parse(argc, argv);

@@ -21,7 +21,8 @@ std::string CpuFeatures() {
 
 }  // namespace
 
-std::string VersionText() { return std::string("sidestep ") + kVersion + " (" + kCommit + ")"; }
+std::string VersionNumber() { return std::string("sidestep ") + kVersion; }
+std::string VersionText() { return VersionNumber() + " (" + kCommit + ")"; }
 
 std::map<std::string, std::string> Versions() {
   return {

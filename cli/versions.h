@@ -5,6 +5,8 @@
 
 namespace sidestep {
 
+/// "sidestep 0.1.0".
+std::string VersionNumber();
 /// "sidestep 0.1.0 (abcdef123456)".
 std::string VersionText();
 

@@ -1,4 +1,5 @@
 include_guard()
+include(GNUInstallDirs)
 
 # What every target of the project is compiled with. Interface only: nothing of it reaches users.
 add_library(sidestep_warnings INTERFACE)
@@ -12,7 +13,7 @@ target_compile_options(sidestep_warnings INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno
 #
 # One folder, one static library, one alias sidestep::<folder>. Include paths start at the
 # repository root. DEPENDS are the module's arrows; tests/architecture_test.cc holds the includes
-# to them.
+# to them. The library and the module's headers are installed for other projects.
 function(sidestep_module name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
   add_library(sidestep_${name} STATIC ${ARG_SOURCES})
@@ -20,11 +21,23 @@ function(sidestep_module name)
   set_target_properties(sidestep_${name} PROPERTIES EXPORT_NAME ${name})
   target_compile_features(sidestep_${name} PUBLIC cxx_std_20)
   target_include_directories(sidestep_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
-                                                     $<INSTALL_INTERFACE:include/sidestep>)
+                                                     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/sidestep>)
   target_link_libraries(
     sidestep_${name}
     PUBLIC ${ARG_DEPENDS}
     PRIVATE $<BUILD_INTERFACE:sidestep_warnings> ${ARG_PRIVATE_DEPENDS})
+  set_property(GLOBAL APPEND PROPERTY SIDESTEP_MODULES sidestep_${name})
+  install(
+    TARGETS sidestep_${name}
+    EXPORT sidestep-targets
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+  install(
+    DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}
+    DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sidestep
+    COMPONENT development
+    FILES_MATCHING
+    PATTERN "*.h"
+    PATTERN "micro" EXCLUDE)
 endfunction()
 
 # Everything that the thread sanitizer has to see: `./dev test --all` builds it in the tsan preset.
