@@ -241,7 +241,8 @@ SourceTree ReadSourceTree(const std::filesystem::path& root) {
       if (hidden || path == "build" || path == "out") it.disable_recursion_pending();
       continue;
     }
-    if (!it->is_regular_file() || path == ".git") continue;  // a worktree's points to its repository
+    if (path == ".git") continue;  // a worktree's points to its repository
+    if (!it->is_regular_file()) continue;
     std::ifstream stream(it->path(), std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     if (text.find('\0') == std::string::npos) tree[path] = text;
