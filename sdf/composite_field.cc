@@ -1,5 +1,6 @@
 #include "sdf/composite_field.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -12,14 +13,16 @@ struct PlacedField {
     const Pose X_WO = object.X_WO(t);
     R_WO = X_WO.rotation().toRotationMatrix();
     p_WO = X_WO.translation();
+    if (object.growth_m) growth_m = std::clamp(object.growth_m(t), 0.0, object.max_growth_m);
   }
 
   // Lowers the given answer at Q to that of this object, if that is nearer.
   template <class Gradient>
   void Lower(const Eigen::Vector3d& p_WQ, double& distance_m, Gradient&& gradient_W) const {
     const GridSample sample = field_O.Sample(R_WO.transpose() * (p_WQ - p_WO));
-    if (sample.in_grid && sample.distance_m < distance_m) {
-      distance_m = sample.distance_m;
+    const double object_m = sample.distance_m - growth_m;
+    if (sample.in_grid && object_m < distance_m) {
+      distance_m = object_m;
       gradient_W = R_WO * sample.gradient;
     }
   }
@@ -27,6 +30,7 @@ struct PlacedField {
   const SdfGrid& field_O;
   Eigen::Matrix3d R_WO;
   Eigen::Vector3d p_WO;
+  double growth_m = 0;
 };
 
 bool ReachesClampAtItsBorder(const SdfGrid& field, double clamp_m) {
@@ -57,7 +61,10 @@ CompositeField::CompositeField(std::shared_ptr<const SdfGrid> static_W,
     if (!object.field_O || !object.X_WO) {
       throw std::invalid_argument("CompositeField: an object needs a field and a pose");
     }
-    if (!ReachesClampAtItsBorder(*object.field_O, max_distance_m_)) {
+    if (!(object.max_growth_m >= 0)) {
+      throw std::invalid_argument("CompositeField: max_growth_m must be >= 0");
+    }
+    if (!ReachesClampAtItsBorder(*object.field_O, max_distance_m_ + object.max_growth_m)) {
       throw std::invalid_argument("CompositeField: an object's grid has too little padding");
     }
   }

@@ -15,15 +15,19 @@ namespace sidestep {
 struct MovingField {
   std::shared_ptr<const SdfGrid> field_O;
   std::function<Pose(EpisodeTime)> X_WO;  ///< pure, finite, safe from many threads
+  /// By how much the thing is taken to be thicker all round [m], from 0 to max_growth_m, where it
+  /// may be elsewhere than at X_WO; as pure as X_WO. Empty: never.
+  std::function<double(EpisodeTime)> growth_m = {};
+  double max_growth_m = 0;
 };
 
 /// A world with moving things in it, composed when it is asked:
-///   phi(p, t) = min(static(p), field_j(X_OW_j(t) p), max_distance_m),
+///   phi(p, t) = min(static(p), field_j(X_OW_j(t) p) - growth_j(t), max_distance_m),
 /// with the gradient of whichever is smallest, in W. It costs no work and no memory for each time
 /// it is asked about, and rounds no position to cells.
 ///
-/// An object's field must reach max_distance_m wherever its grid ends (MakeObjectField sees to
-/// that). Then the composite is continuous, and in free space within max_distance_m it is the
+/// An object's field must reach max_distance_m + max_growth_m wherever its grid ends
+/// (MakeObjectField sees to that). Then the composite is continuous, and in free space within max_distance_m it is the
 /// distance to the nearest of all things; inside things that touch or overlap it may
 /// underestimate the depth.
 ///

@@ -1,5 +1,8 @@
 #include "sdf/world_model.h"
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -89,25 +92,33 @@ class PredictedWorld final : public MappedWorld {
       : MappedWorld(options),
         predictor_(MakePredictor(options.predictor)),
         tracker_(options.grid,
-                 {.max_distance_m = options.max_distance_m, .convention = options.convention}) {}
+                 {.max_distance_m = options.max_distance_m + GrowthLimit(options),
+                  .convention = options.convention}) {}
 
   std::vector<PredictedObject> DescribeObjects(
       const std::vector<EpisodeTime>& times) const override {
     std::vector<PredictedObject> described;
-    for (const auto& object : objects_) {
+    for (const auto& [object, motion] : believed_) {
       PredictedObject& box = described.emplace_back();
       box.id = object->id;
       box.half_extents_m = object->box_half_extents_m;
       box.t = times;
       const Pose X_OBox = Pose::Translation(object->box_center_O);
-      for (const EpisodeTime t : times) {
-        box.X_WO.push_back(predictor_->PredictPose(*object, t) * X_OBox);
-      }
+      for (const EpisodeTime t : times) box.X_WO.push_back(motion.X_WO(t) * X_OBox);
     }
     return described;
   }
 
  private:
+  struct Belief {
+    std::shared_ptr<const TrackedObject> object;
+    PredictedMotion motion;
+  };
+
+  static double GrowthLimit(const WorldModelOptions& options) {
+    return options.growth_sigmas > 0 ? options.growth_limit_m : 0;
+  }
+
   void Learn(const OccupancyGrid& occupancy, EpisodeTime t) override {
     const TrackerTimes times = tracker_.Update(occupancy, t);
     times_.segment_s += times.segment_s;
@@ -118,20 +129,28 @@ class PredictedWorld final : public MappedWorld {
   }
 
   std::shared_ptr<const DistanceField> Compose(std::shared_ptr<const SdfGrid> static_W) override {
-    objects_ = tracker_.MovingObjects();
+    believed_.clear();
     std::vector<MovingField> moving;
-    for (const auto& object : objects_) {
-      moving.push_back({object->field_O, [object, predictor = predictor_](EpisodeTime t) {
-                          return predictor->PredictPose(*object, t);
-                        }});
+    for (const auto& object : tracker_.MovingObjects()) {
+      const Belief& belief = believed_.emplace_back(Belief{object, predictor_->Predict(*object)});
+      MovingField& field = moving.emplace_back(MovingField{object->field_O, belief.motion.X_WO});
+      if (options_.growth_sigmas > 0) {
+        field.max_growth_m = options_.growth_limit_m;
+        field.growth_m = [sigmas = options_.growth_sigmas,
+                          covariance_m2 = belief.motion.covariance_m2](EpisodeTime t) {
+          const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance_m2(t),
+                                                                    Eigen::EigenvaluesOnly);
+          return sigmas * std::sqrt(std::max(0.0, axes.eigenvalues()(2)));
+        };
+      }
     }
     return std::make_shared<CompositeField>(std::move(static_W), std::move(moving),
                                             options_.max_distance_m);
   }
 
-  std::shared_ptr<const ObstaclePredictor> predictor_;
+  std::unique_ptr<const ObstaclePredictor> predictor_;
   ObjectTracker tracker_;
-  std::vector<std::shared_ptr<const TrackedObject>> objects_;  // in the latest field
+  std::vector<Belief> believed_;  // in the latest field
 };
 
 // Knowledge::kFullKnowledge
@@ -234,6 +253,9 @@ std::unique_ptr<WorldModel> MakeWorldModel(const WorldModelOptions& options) {
   CheckGridSpec(options.grid);
   if (!(options.max_distance_m > 0)) {
     throw std::invalid_argument("WorldModel: max_distance_m must be > 0");
+  }
+  if (!(options.growth_sigmas >= 0) || !(options.growth_limit_m >= 0)) {
+    throw std::invalid_argument("WorldModel: growth must be >= 0");
   }
   MakePredictor(options.predictor);  // A wrong name is wrong even where it is not used.
   switch (options.knowledge) {

@@ -33,7 +33,10 @@ using TrueObstacles = std::function<std::vector<ObjectObservation>(EpisodeTime)>
 
 struct WorldModelOptions {
   Knowledge knowledge = Knowledge::kPrediction;
-  std::string predictor = "two_frame";  ///< a name of sdf/prediction/registry.h
+  std::string predictor = "kalman_cv";  ///< a name of sdf/prediction/registry.h
+  /// Under prediction, moving things are taken to be thicker by so many standard deviations of where
+  /// they are predicted to be, in the worst direction, but by no more than the limit [m].
+  double growth_sigmas = 0, growth_limit_m = 0.1;
   GridSpec grid;                        ///< in W
   double max_distance_m = 0;            ///< fields are clamped here: safety margin + largest sphere
   /// Of fields made from cells; full_knowledge has the true shapes of what moves.

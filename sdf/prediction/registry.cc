@@ -2,6 +2,10 @@
 
 #include <stdexcept>
 
+#include "sdf/prediction/imm.h"
+#include "sdf/prediction/kalman_ca.h"
+#include "sdf/prediction/kalman_cv.h"
+#include "sdf/prediction/kalman_turn.h"
 #include "sdf/prediction/stationary.h"
 #include "sdf/prediction/two_frame.h"
 
@@ -15,6 +19,10 @@ struct Entry {
 
 // To add a predictor: one line here, and its files beside this one.
 constexpr Entry kPredictors[] = {
+    {"imm", &MakeImmPredictor},
+    {"kalman_ca", &MakeKalmanCaPredictor},
+    {"kalman_cv", &MakeKalmanCvPredictor},
+    {"kalman_turn", &MakeKalmanTurnPredictor},
     {"stationary", &MakeStationaryPredictor},
     {"two_frame", &MakeTwoFramePredictor},
 };

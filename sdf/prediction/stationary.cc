@@ -5,8 +5,12 @@ namespace {
 
 class StationaryPredictor final : public ObstaclePredictor {
  public:
-  Pose PredictPose(const TrackedObject& object, EpisodeTime) const override {
-    return object.X_WO();
+  PredictedMotion Predict(const TrackedObject& object) const override {
+    const Sighting latest = object.latest();
+    return {[latest](EpisodeTime) { return Pose::Translation(latest.p_WO); },
+            [latest](EpisodeTime) -> Eigen::Matrix3d {
+              return latest.sigma_m * latest.sigma_m * Eigen::Matrix3d::Identity();
+            }};
   }
 };
 

@@ -6,7 +6,7 @@
 
 namespace sidestep {
 
-/// Everything stays where it was last seen.
+/// Everything stays where it was last seen. Its covariance is that of the sighting alone.
 std::unique_ptr<ObstaclePredictor> MakeStationaryPredictor();
 
 }  // namespace sidestep

@@ -1,6 +1,7 @@
 #include "sdf/tracking/object_tracker.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <stdexcept>
 #include <tuple>
@@ -55,7 +56,7 @@ TrackerTimes ObjectTracker::Update(const OccupancyGrid& occupancy, EpisodeTime t
 
   for (auto& [id, track] : tracks_) {
     if (track.state == State::kResting) {
-      AddSighting(track, {t, track.object.latest().p_WO});
+      AddSighting(track, See(t, track.object.latest().p_WO));
     } else {
       ++track.missed_scans;  // unless it is found below
     }
@@ -130,7 +131,7 @@ ObjectTracker::Track* ObjectTracker::Begin(const Component& component, EpisodeTi
   Track& track = tracks_[id];
   track.object.id = id;
   track.object.first_seen = t;
-  track.object.history = {{t, component.centroid_m}};
+  track.object.history = {See(t, component.centroid_m)};
   track.p_WStart = component.centroid_m;
   track.t_start = t;
   track.settle = options_.settle;
@@ -151,7 +152,8 @@ void ObjectTracker::Follow(Track& track, const Component& component, EpisodeTime
   const bool deformed = is_other && is_whole && !track.cut_off;
   const bool completed = is_whole && track.cut_off;
   const bool grew = is_longer && component.cells.size() > track.num_cells;
-  AddSighting(track, {t, deformed ? PredictPosition(track.object, t) : Locate(track, component)});
+  AddSighting(track,
+              See(t, deformed ? PredictPosition(track.object, t) : Locate(track, component)));
   if (deformed || completed || grew) TakeShape(track, component);
 }
 
@@ -179,6 +181,11 @@ void ObjectTracker::Classify(Track& track, const Component& component, EpisodeTi
     track.object.field_O.reset();
     background_.Absorb(track.object.id, component);
   }
+}
+
+Sighting ObjectTracker::See(EpisodeTime t, const Eigen::Vector3d& p_WO) const {
+  // Uniform over a cell: off by up to half of one to either side.
+  return {t, p_WO, grid_.cell_m / std::sqrt(12.0)};
 }
 
 Eigen::Vector3d ObjectTracker::Locate(const Track& track, const Component& component) const {

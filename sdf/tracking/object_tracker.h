@@ -83,6 +83,7 @@ class ObjectTracker {
   void Follow(Track& track, const Component& component, EpisodeTime t) const;
   void Classify(Track& track, const Component& component, EpisodeTime t);
 
+  Sighting See(EpisodeTime t, const Eigen::Vector3d& p_WO) const;
   // Where O is, if `component` is a view of the track's shape.
   Eigen::Vector3d Locate(const Track& track, const Component& component) const;
   bool IsCutOff(const Component& component) const;

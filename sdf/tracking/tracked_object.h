@@ -14,6 +14,7 @@ namespace sidestep {
 struct Sighting {
   EpisodeTime t;
   Eigen::Vector3d p_WO;
+  double sigma_m = 0.01;  ///< > 0, standard deviation of each coordinate of p_WO
 };
 
 /// What is known of a thing that moves, as it was at the latest scan: a snapshot, so that a
@@ -36,8 +37,10 @@ struct TrackedObject {
   Pose X_WO() const { return Pose::Translation(history.back().p_WO); }
 };
 
-/// Mean velocity [m/s] between the latest sighting and the one whose age is nearest to `baseline`;
-/// zero if there is only one sighting.
+/// The sighting whose age is nearest to `baseline`; the latest itself only if it is the only one.
+const Sighting& SightingBefore(const std::vector<Sighting>& history, HorizonOffset baseline);
+
+/// Mean velocity [m/s] between the latest sighting and SightingBefore; zero if there is only one.
 Eigen::Vector3d MeanVelocity(const std::vector<Sighting>& history, HorizonOffset baseline);
 
 /// How far apart two sightings should be for a velocity. The centroid of a thing made of cells is

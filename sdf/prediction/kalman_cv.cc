@@ -1,0 +1,48 @@
+#include "sdf/prediction/kalman_cv.h"
+
+namespace sidestep {
+namespace {
+
+constexpr double kCvNoise = 0.1;  // m^2/s^3
+
+MotionVector Move(const MotionVector& x, double dt_s, MotionMatrix* F) {
+  MotionVector moved = MotionVector::Zero();
+  moved.segment<3>(kP) = x.segment<3>(kP) + dt_s * x.segment<3>(kV);
+  moved.segment<3>(kV) = x.segment<3>(kV);
+  if (F != nullptr) {
+    F->setZero();
+    F->topLeftCorner<6, 6>().setIdentity();
+    F->block<3, 3>(kP, kV).diagonal().setConstant(dt_s);
+  }
+  return moved;
+}
+
+MotionMatrix Noise(double dt_s) {
+  MotionMatrix Q = MotionMatrix::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    const int p = kP + axis, v = kV + axis;
+    Q(p, p) = kCvNoise * dt_s * dt_s * dt_s / 3;
+    Q(p, v) = Q(v, p) = kCvNoise * dt_s * dt_s / 2;
+    Q(v, v) = kCvNoise * dt_s;
+  }
+  AddPriorNoise(kA, Q);
+  AddPriorNoise(kTurn, Q);
+  return Q;
+}
+
+class KalmanCvPredictor final : public ObstaclePredictor {
+ public:
+  PredictedMotion Predict(const TrackedObject& object) const override {
+    return PredictByFilter(kConstantVelocity, object);
+  }
+};
+
+}  // namespace
+
+const MotionModel kConstantVelocity = {&Move, &Noise};
+
+std::unique_ptr<ObstaclePredictor> MakeKalmanCvPredictor() {
+  return std::make_unique<KalmanCvPredictor>();
+}
+
+}  // namespace sidestep

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <memory>
+
+#include "sdf/prediction/motion_filter.h"
+#include "sdf/prediction/predictor.h"
+
+namespace sidestep {
+
+/// Constant velocity with white noise of acceleration, density 0.1 [m^2/s^3] an axis:
+///   p' = p + v dt,  v' = v,  Q = q [dt^3/3, dt^2/2; dt^2/2, dt].
+/// Source: Bar-Shalom, Li & Kirubarajan (2001), section 6.2.2.
+extern const MotionModel kConstantVelocity;
+
+/// A Kalman filter on that model.
+std::unique_ptr<ObstaclePredictor> MakeKalmanCvPredictor();
+
+}  // namespace sidestep

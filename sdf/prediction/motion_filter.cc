@@ -1,0 +1,79 @@
+#include "sdf/prediction/motion_filter.h"
+
+#include <Eigen/LU>
+#include <cmath>
+
+namespace sidestep {
+namespace {
+
+Eigen::Matrix3d Square(double sigma) { return sigma * sigma * Eigen::Matrix3d::Identity(); }
+
+}  // namespace
+
+void AddPriorNoise(int part, MotionMatrix& Q) {
+  if (part == kA) Q.block<3, 3>(kA, kA) += Square(kPriorAcceleration);
+  if (part == kTurn) Q(kTurn, kTurn) += kPriorTurn * kPriorTurn;
+}
+
+MotionEstimate Propagate(const MotionModel& model, const MotionEstimate& estimate, double dt_s) {
+  MotionMatrix F;
+  MotionEstimate moved;
+  moved.x = model.move(estimate.x, dt_s, &F);
+  moved.P = F * estimate.P * F.transpose() + model.noise(std::abs(dt_s));
+  return moved;
+}
+
+MotionFilter::MotionFilter(const MotionModel& model, const Sighting& first)
+    : model_(model), t_(first.t), seen_(first.p_WO), sigma_m_(first.sigma_m) {
+  estimate_.x.segment<3>(kP) = first.p_WO;
+  estimate_.P.block<3, 3>(kP, kP) = Square(first.sigma_m);
+  estimate_.P.block<3, 3>(kV, kV) = Square(kPriorSpeed);
+  AddPriorNoise(kA, estimate_.P);
+  AddPriorNoise(kTurn, estimate_.P);
+  gain_.setZero();
+}
+
+Innovation MotionFilter::Update(const Sighting& sighting) {
+  const MotionEstimate expected =
+      Propagate(model_, estimate_, (sighting.t - t_).seconds());
+  const Eigen::Matrix3d R = Square(sighting.sigma_m);
+  Innovation innovation;
+  innovation.residual_m = sighting.p_WO - expected.x.segment<3>(kP);
+  innovation.S_m2 = expected.P.block<3, 3>(kP, kP) + R;
+  gain_ = expected.P.leftCols<3>() * innovation.S_m2.inverse();
+  MotionMatrix I_KH = MotionMatrix::Identity();
+  I_KH.leftCols<3>() -= gain_;
+  estimate_.x = expected.x + gain_ * innovation.residual_m;
+  estimate_.P = I_KH * expected.P * I_KH.transpose() + gain_ * R * gain_.transpose();
+  t_ = sighting.t;
+  seen_ = sighting.p_WO;
+  sigma_m_ = sighting.sigma_m;
+  return innovation;
+}
+
+MotionEstimate MotionFilter::AnchoredEstimate() const {
+  MotionEstimate anchored = estimate_;
+  anchored.x.segment<3>(kP) = seen_;
+  const Eigen::Matrix3d R = Square(sigma_m_);
+  const Eigen::Matrix<double, kMotionDims, 3> KR = gain_ * R;
+  anchored.P.leftCols<3>() = KR;
+  anchored.P.topRows<3>() = KR.transpose();
+  anchored.P.block<3, 3>(kP, kP) = R;
+  return anchored;
+}
+
+PredictedMotion PredictByFilter(const MotionModel& model, const TrackedObject& object) {
+  MotionFilter filter(model, object.history.front());
+  for (std::size_t n = 1; n < object.history.size(); ++n) filter.Update(object.history[n]);
+  const EpisodeTime seen = filter.t();
+  const MotionEstimate estimate = filter.AnchoredEstimate();
+  return {[model, estimate, seen](EpisodeTime t) {
+            const MotionVector x = model.move(estimate.x, (t - seen).seconds(), nullptr);
+            return Pose::Translation(x.segment<3>(kP));
+          },
+          [model, estimate, seen](EpisodeTime t) -> Eigen::Matrix3d {
+            return Propagate(model, estimate, (t - seen).seconds()).P.block<3, 3>(kP, kP);
+          }};
+}
+
+}  // namespace sidestep
