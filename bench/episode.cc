@@ -25,6 +25,8 @@ WorldModelOptions MakeWorldModelOptions(const Scenario& scenario, const RobotMod
   WorldModelOptions options;
   options.knowledge = KnowledgeFromString(scenario.knowledge);
   options.predictor = scenario.predictor;
+  options.growth_sigmas = scenario.growth_sigmas;
+  options.growth_limit_m = scenario.growth_limit_m;
   options.grid = scenario.grid;
   options.max_distance_m = scenario.epsilon_m + robot.largest_sphere_radius_m();
   if (world.truth != nullptr) {
@@ -54,6 +56,9 @@ Recording BeginRecording(const Scenario& scenario, const RobotModel& robot,
   recording.header = {{"scenario", scenario.name},       {"robot", robot.name()},
                       {"planner", scenario.planner},     {"knowledge", scenario.knowledge},
                       {"predictor", scenario.predictor}, {"seed", std::to_string(scenario.seed)}};
+  for (const auto& [choice, chosen] : scenario.choices) {
+    recording.header["choice." + choice] = chosen;
+  }
   recording.scenario_yaml = ToYaml(scenario);
   recording.model_xml = world.model_xml;
   recording.joints = world.joints;
@@ -129,6 +134,8 @@ class Loop {
     sense_s_ += ThreadCpuSeconds() - begin;
     if (scan) {
       model_->Observe(*scan);
+      std::vector<TrackEvent>& events = result_.recording.events;
+      for (TrackEvent& event : model_->TakeEvents()) events.push_back(std::move(event));
       has_scan_ = true;
     }
   }

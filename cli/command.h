@@ -17,6 +17,7 @@ void AddListCommand(CommandLine& line);
 void AddCompareCommand(CommandLine& line);
 void AddRenderCommand(CommandLine& line);
 void AddReproduceCommand(CommandLine& line);
+void AddStudyCommand(CommandLine& line);
 void AddDoctorCommand(CommandLine& line);
 void AddManualCommand(CommandLine& line);
 

@@ -44,12 +44,24 @@ const Kind kKinds[] = {
      }},
 };
 
+// A line for each choice that a scenario leaves open.
+std::string ChoicesOf(const std::string& scenario_file) {
+  std::string lines;
+  for (const auto& [choice, options] : ScenarioChoices(scenario_file)) {
+    std::string list;
+    for (const std::string& option : options) list += (list.empty() ? "" : "|") + option;
+    lines += "\n    --set " + choice + "=" + list;
+  }
+  return lines;
+}
+
 // Every name with its kind; scenarios and metrics with what they are.
 int ListAll() {
   const DataPaths paths = FindDataPaths();
   std::map<std::string, std::string> notes;
   for (const std::string& name : ScenarioNames(paths.scenarios)) {
-    notes[name] = LoadScenario(paths.scenarios + "/" + name + ".yaml").description;
+    const std::string file = paths.scenarios + "/" + name + ".yaml";
+    notes[name] = LoadScenario(file).description + ChoicesOf(file);
   }
   for (const Metric& metric : Metrics()) {
     notes[metric.name] = metric.meaning + std::string(" [") + metric.unit + "]";

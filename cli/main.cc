@@ -47,6 +47,7 @@ int Run(int argc, char** argv) {
   sidestep::AddCompareCommand(line);
   sidestep::AddRenderCommand(line);
   sidestep::AddReproduceCommand(line);
+  sidestep::AddStudyCommand(line);
   sidestep::AddListCommand(line);
   sidestep::AddDoctorCommand(line);
   sidestep::AddManualCommand(line);

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "bench/episode.h"
 #include "bench/result_file.h"
@@ -19,18 +20,10 @@ namespace {
 struct RunOptions {
   std::string scenario;
   Overrides overrides;
+  std::vector<std::string> settings;  // KEY=VALUE
   std::string out;
   bool json = false;
 };
-
-std::string MakeFolder(const std::string& out) {
-  std::error_code error;
-  std::filesystem::create_directories(out, error);
-  if (error || !std::filesystem::is_directory(out)) {
-    throw InputError("--out", "'" + out + "' cannot be made a folder");
-  }
-  return out;
-}
 
 void PrintSummary(const EpisodeResult& result, const std::string& out) {
   const auto& metrics = result.recording.metrics;
@@ -53,7 +46,9 @@ void PrintSummary(const EpisodeResult& result, const std::string& out) {
 
 int Run(const RunOptions& options) {
   const DataPaths paths = FindDataPaths();
-  const Problem problem = LoadProblem(options.scenario, options.overrides, paths);
+  Overrides overrides = options.overrides;
+  overrides.settings = ParseSettings(options.settings);
+  const Problem problem = LoadProblem(options.scenario, overrides, paths);
   const std::string out = MakeFolder(options.out.empty() ? "out/" + problem.scenario.name + "/" +
                                                                problem.scenario.knowledge
                                                          : options.out);
@@ -82,6 +77,11 @@ void AddRunCommand(CommandLine& line) {
   Overrides& overrides = options->overrides;
   run->add_option("SCENARIO", options->scenario, "A name (see `sidestep list`) or a path")
       ->required();
+  run->add_option(
+         "--set", options->settings,
+         "KEY=VALUE: one of the scenario's choices (pair=3), or any key of its file by its "
+         "path (planner.qc=2); may be repeated")
+      ->allow_extra_args(false);
   run->add_option("--knowledge", overrides.knowledge,
                   "What the planner is told: static, execute_and_update, prediction, "
                   "full_knowledge");

@@ -18,7 +18,6 @@ namespace {
 void Override(Scenario& scenario, const Overrides& overrides) {
   if (overrides.knowledge) scenario.knowledge = *overrides.knowledge;
   if (overrides.predictor) scenario.predictor = *overrides.predictor;
-  if (overrides.seed) scenario.seed = static_cast<std::uint64_t>(*overrides.seed);
   if (overrides.latency_ms) scenario.latency_s = *overrides.latency_ms / 1e3;
   if (overrides.epsilon_m) scenario.epsilon_m = *overrides.epsilon_m;
   if (overrides.speed_m_s) {
@@ -65,8 +64,34 @@ std::vector<std::string> ModelNames(const std::string& models, const std::string
 
 }  // namespace
 
+std::string MakeFolder(const std::string& out) {
+  std::error_code error;
+  std::filesystem::create_directories(out, error);
+  if (error || !std::filesystem::is_directory(out)) {
+    throw InputError("--out", "'" + out + "' cannot be made a folder");
+  }
+  return out;
+}
+
+Settings ParseSettings(const std::vector<std::string>& texts) {
+  Settings settings;
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      throw InputError("--set", "must be KEY=VALUE, is '" + text + "'");
+    }
+    const std::string key = text.substr(0, equals);
+    if (!settings.emplace(key, text.substr(equals + 1)).second) {
+      throw InputError("--set " + key, "is given twice");
+    }
+  }
+  return settings;
+}
+
 Problem LoadProblem(const std::string& name, const Overrides& overrides, const DataPaths& paths) {
-  Scenario scenario = LoadScenario(FindScenario(name, paths));
+  Settings settings = overrides.settings;
+  if (overrides.seed) settings["seed"] = std::to_string(*overrides.seed);  // motions follow from it
+  Scenario scenario = LoadScenario(FindScenario(name, paths), settings);
   Override(scenario, overrides);
   CheckWord(scenario, "knowledge", scenario.knowledge, KnowledgeWords(),
             overrides.knowledge ? "--knowledge" : nullptr);

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "bench/episode.h"
 #include "cli/data_paths.h"
@@ -12,11 +13,18 @@ namespace sidestep {
 
 /// What the command line may change of a scenario.
 struct Overrides {
+  Settings settings;  ///< put in place first
   std::optional<std::string> knowledge, predictor;
   std::optional<double> speed_m_s;  ///< of every moving obstacle
   std::optional<int> seed;
   std::optional<double> latency_ms, epsilon_m;
 };
+
+/// KEY=VALUE each. @throws InputError for one without a key or a =, or a key given twice.
+Settings ParseSettings(const std::vector<std::string>& texts);
+
+/// Makes the folder `out` unless it is there, and answers its name. @throws InputError for --out.
+std::string MakeFolder(const std::string& out);
 
 /// A scenario that is ready to run, and its robot.
 struct Problem {

@@ -61,6 +61,15 @@ struct CycleRecord {
   std::vector<PredictedObject> objects;
 };
 
+/// What tracking noticed about a thing, when it noticed it.
+struct TrackEvent {
+  EpisodeTime t;     ///< of the scan
+  std::string what;  ///< a word of sdf/tracking/object_tracker.h
+  int id = 0;        ///< of the thing
+  int other_id = 0;  ///< of the other one in a merge or a split; 0: none
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< [m] where it is thought to be
+};
+
 /// Everything of one episode: enough to draw it and to judge it again without running it. Holds no
 /// wall-clock figure, so that equal runs give equal bytes.
 struct Recording {
@@ -76,6 +85,7 @@ struct Recording {
   std::vector<ControlSample> control;  ///< at the control rate
   std::vector<TruthSample> truth;      ///< at 100 Hz
   std::vector<CycleRecord> cycles;
+  std::vector<TrackEvent> events;         ///< of prediction only, in order
   std::map<std::string, double> metrics;  ///< of this episode; NaN where one does not apply
 };
 

@@ -268,6 +268,19 @@ void WriteCycles(Hdf5ImageWriter& file, const Recording& recording) {
   file.Write("predictions/poses/quaternion", {{num_poses, 4}, poses.quaternions});
 }
 
+void WriteEvents(Hdf5ImageWriter& file, const Recording& recording) {
+  const std::vector<TrackEvent>& events = recording.events;
+  file.MakeGroup("events");
+  file.Write("events/t", Column(events, [](const auto& e) { return e.t.seconds(); }), "s");
+  file.Write("events/what", StringColumn(events, [](const auto& e) { return e.what; }));
+  file.Write("events/id", IntegerColumn(events, [](const auto& e) { return e.id; }));
+  file.Write("events/other_id", IntegerColumn(events, [](const auto& e) { return e.other_id; }));
+  file.Write("events/position",
+             VectorColumn(
+                 events, 3, [](const auto& e) -> const auto& { return e.p_W; }),
+             "m");
+}
+
 // ---- reading
 
 Doubles ReadTimes(const Hdf5ImageReader& file, const std::string& path, hsize_t size) {
@@ -463,6 +476,20 @@ void ReadCycles(const Hdf5ImageReader& file, Recording* recording) {
   ReadPredictions(file, recording);
 }
 
+void ReadEvents(const Hdf5ImageReader& file, Recording* recording) {
+  const Doubles t = ReadTimes(file, "events/t", kAny);
+  const hsize_t num_rows = t.values.size();
+  const Strings what = file.ReadStrings("events/what", {num_rows});
+  const Integers id = file.ReadIntegers("events/id", {num_rows});
+  const Integers other_id = file.ReadIntegers("events/other_id", {num_rows});
+  const Doubles position = file.ReadDoubles("events/position", {num_rows, 3});
+  for (std::size_t i = 0; i < num_rows; ++i) {
+    recording->events.push_back({EpisodeTime(t.values[i]), what.values[i],
+                                 static_cast<int>(id.values[i]),
+                                 static_cast<int>(other_id.values[i]), VectorAt(position, i)});
+  }
+}
+
 std::vector<unsigned char> ToHdf5(const Recording& recording) {
   Hdf5ImageWriter file;
   file.SetAttribute("format", kFormat.name);
@@ -472,6 +499,7 @@ std::vector<unsigned char> ToHdf5(const Recording& recording) {
   WriteControl(file, recording);
   WriteTruth(file, recording);
   WriteCycles(file, recording);
+  WriteEvents(file, recording);
   return file.Finish();
 }
 
@@ -493,6 +521,7 @@ Recording ReadRecording(const std::string& path) {
   ReadControl(file, &recording);
   ReadTruth(file, &recording);
   ReadCycles(file, &recording);
+  ReadEvents(file, &recording);
   return recording;
 }
 

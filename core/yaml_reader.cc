@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -121,6 +122,36 @@ std::string Describe(const YAML::Node& node) {
   }
 }
 
+// The keys and list places of a path: `a[0].b` leads over a and 0 to b.
+std::vector<std::string> KeysOf(const std::string& path) {
+  std::vector<std::string> keys = {""};
+  for (const char c : path) {
+    if (c == '.' || c == '[' || c == ']') {
+      keys.emplace_back();
+    } else {
+      keys.back() += c;
+    }
+  }
+  std::erase(keys, "");
+  return keys;
+}
+
+// What a map holds under a key or a list at a place; undefined if there is nothing.
+YAML::Node ChildOf(const YAML::Node& node, const std::string& key) {
+  if (node.IsMap()) {
+    for (const auto& entry : node) {
+      if (entry.first.IsScalar() && entry.first.Scalar() == key) return entry.second;
+    }
+  }
+  if (node.IsSequence()) {
+    std::size_t index = 0;
+    const auto parsed = std::from_chars(key.data(), key.data() + key.size(), index);
+    const bool is_number = parsed.ec == std::errc() && parsed.ptr == key.data() + key.size();
+    if (is_number && index < node.size()) return node[index];
+  }
+  return YAML::Node(YAML::NodeType::Undefined);
+}
+
 }  // namespace
 
 struct YamlReader::Node {
@@ -129,6 +160,9 @@ struct YamlReader::Node {
   std::string path;  // of this map, empty at the top
   int line = 1;
   mutable std::set<std::string> known;
+  // Paths that were set from elsewhere, and from where. Shared by all views of one file.
+  std::shared_ptr<std::map<std::string, std::string>> set =
+      std::make_shared<std::map<std::string, std::string>>();
 
   std::string PathOf(const std::string& key) const {
     if (path.empty()) return key;
@@ -139,10 +173,7 @@ struct YamlReader::Node {
   }
   YAML::Node Find(const std::string& key) const {
     known.insert(key);
-    for (const auto& entry : yaml) {
-      if (entry.first.Scalar() == key) return entry.second;
-    }
-    return YAML::Node(YAML::NodeType::Undefined);
+    return ChildOf(yaml, key);
   }
   // The line of `key`, or of the list in which `key`, "list[3]", is an item; else of this map.
   int LineOfKey(const std::string& key) const {
@@ -152,8 +183,19 @@ struct YamlReader::Node {
     }
     return line;
   }
+  // Throws if what is wrong at `full_path` was set from elsewhere: there or in what holds it.
+  void BlameSetting(const std::string& full_path, const std::string& why) const {
+    for (const auto& [set_path, origin] : *set) {
+      const bool is_inside =
+          full_path.rfind(set_path, 0) == 0 &&
+          (full_path.size() == set_path.size() || full_path[set_path.size()] == '.' ||
+           full_path[set_path.size()] == '[');
+      if (is_inside) throw InputError(origin + " " + full_path, why);
+    }
+  }
   [[noreturn]] void FailAt(const YAML::Node& at, const std::string& key,
                            const std::string& why) const {
+    BlameSetting(PathOf(key), why);
     // The mark of an empty value is where the next thing begins: often a line too far down.
     const bool marked = at.IsDefined() && !at.IsNull();
     throw InputError(file, marked ? LineOf(at, line) : LineOfKey(key), PathOf(key), why);
@@ -190,6 +232,7 @@ struct YamlReader::Node {
     child->yaml = node;
     child->file = file;
     child->path = PathOf(key);
+    child->set = set;
     child->line = LineOf(node, line);  // of its first key
     child->CheckKeys();
     return child;
@@ -347,6 +390,38 @@ Pose YamlReader::GetPose(const std::string& key) const {
   return Pose::FromRollPitchYaw(rpy, p);
 }
 
+void YamlReader::Set(const std::string& path, const std::string& value, const std::string& origin) {
+  const auto fail = [&](const std::string& why) { throw InputError(origin + " " + path, why); };
+  CheckText(value, origin + " " + path);
+  const std::vector<std::string> keys = KeysOf(path);
+  if (keys.empty()) fail("is no key");
+  YAML::Node node = node_->yaml;
+  for (std::size_t i = 0; i + 1 < keys.size(); ++i) {
+    const YAML::Node next = ChildOf(node, keys[i]);
+    if (!next.IsDefined()) fail("leads nowhere: there is no " + Quote(keys[i]));
+    node.reset(next);
+  }
+  if (node.IsSequence() && !ChildOf(node, keys.back()).IsDefined()) {
+    fail("leads nowhere: there is no item " + Quote(keys.back()));
+  }
+  if (!node.IsSequence() && !node.IsMap()) fail("leads nowhere: what is there holds no keys");
+  try {
+    const YAML::Node leaf = YAML::Load(value + "\n...\n");
+    if (node.IsSequence()) {
+      node[std::stoul(keys.back())] = leaf;
+    } else {
+      node[keys.back()] = leaf;
+    }
+  } catch (const YAML::Exception& error) {
+    fail("is not valid YAML: " + error.msg);
+  }
+  (*node_->set)[path] = origin;
+}
+
+void YamlReader::Replace(const YamlReader& other) {
+  for (const auto& entry : other.node_->yaml) node_->yaml[entry.first.Scalar()] = entry.second;
+}
+
 bool YamlReader::IsScalar(const std::string& key) const { return node_->Find(key).IsScalar(); }
 
 YamlReader YamlReader::GetMap(const std::string& key) const {
@@ -373,8 +448,10 @@ void YamlReader::CheckNoUnknownKeys() const {
     if (node_->known.count(key) == 0) {
       std::string list;
       for (const std::string& name : node_->known) list += (list.empty() ? "" : ", ") + name;
+      const std::string why = "is not a known key (known here: " + list + ")";
+      node_->BlameSetting(node_->PathOf(key), why);
       throw InputError(node_->file, Node::LineOf(entry.first, node_->line), node_->PathOf(key),
-                       "is not a known key (known here: " + list + ")");
+                       why);
     }
   }
 }

@@ -44,6 +44,16 @@ class YamlReader {
   /// A map {position_m: [x, y, z], rpy_rad: [r, p, y]}; rpy_rad may be left out.
   Pose GetPose(const std::string& key) const;
 
+  /// Sets the value at a path such as `planner.epsilon_m` or `moving_obstacles[0].shape` to what
+  /// `value` says in YAML; where the path leads through maps and lists that exist, its last key may
+  /// be new. What is then found wrong with it is reported as `ORIGIN PATH: WHY`, e.g. `--set
+  /// planner.epsilon_m: must be >= 0, is -1`.
+  /// @throws InputError if the path leads nowhere or the value is not YAML.
+  void Set(const std::string& path, const std::string& value, const std::string& origin);
+
+  /// Takes over every key of `other`, a part of the same file, in place of this one's.
+  void Replace(const YamlReader& other);
+
   /// True if the value of `key` is a scalar (and not a list or a map).
   bool IsScalar(const std::string& key) const;
 

@@ -1,18 +1,26 @@
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <random>
 
 #include "scenarios/scenario.h"
 
 namespace sidestep {
 namespace {
 
-Eigen::Vector3d PositionAt(const LinearMotion& motion, double t_s) {
-  return motion.start_m +
-         std::clamp(t_s, 0.0, motion.stop_at_s) * motion.speed_m_s * motion.direction;
+// How long a motion has been under way at t.
+template <class Motion>
+double Elapsed(const Motion& motion, double t_s) {
+  const double stop_s = std::max(motion.begin_at_s, motion.stop_at_s);
+  return std::clamp(t_s, motion.begin_at_s, stop_s) - motion.begin_at_s;
 }
 
-Eigen::Vector3d PositionAt(const WaypointMotion& motion, double t_s) {
-  double left_m = std::clamp(t_s, 0.0, motion.stop_at_s) * motion.speed_m_s;
+Eigen::Vector3d PositionAfter(const LinearMotion& motion, double elapsed_s) {
+  return motion.start_m + elapsed_s * motion.speed_m_s * motion.direction;
+}
+
+Eigen::Vector3d PositionAfter(const WaypointMotion& motion, double elapsed_s) {
+  double left_m = elapsed_s * motion.speed_m_s;
   for (std::size_t i = 1; i < motion.points_m.size(); ++i) {
     const Eigen::Vector3d leg = motion.points_m[i] - motion.points_m[i - 1];
     const double length_m = leg.norm();
@@ -22,11 +30,46 @@ Eigen::Vector3d PositionAt(const WaypointMotion& motion, double t_s) {
   return motion.points_m.back();
 }
 
+Eigen::Vector3d PositionAfter(const AcceleratedMotion& motion, double elapsed_s) {
+  const double v = motion.speed_m_s, a = motion.acceleration_m_s2;
+  const double steady_s = std::min(elapsed_s, motion.change_at_s);
+  const double changing_s = elapsed_s - steady_s;
+  // Until rest or the highest speed; after that the speed stays.
+  const double last_speed = a < 0 ? 0 : motion.max_speed_m_s;
+  const double ends_s = a == 0 ? changing_s : std::clamp((last_speed - v) / a, 0.0, changing_s);
+  const double way_m =
+      v * steady_s + (v + a * ends_s / 2) * ends_s + (v + a * ends_s) * (changing_s - ends_s);
+  return motion.start_m + way_m * motion.direction;
+}
+
+Eigen::Vector3d PositionAfter(const CircleMotion& motion, double elapsed_s) {
+  const double turned_rad = elapsed_s * motion.speed_m_s / motion.radius_m;
+  const double angle_rad = motion.start_angle_rad + (motion.clockwise ? -turned_rad : turned_rad);
+  return motion.center_m +
+         motion.radius_m * Eigen::Vector3d(std::cos(angle_rad), std::sin(angle_rad), 0);
+}
+
+Eigen::Vector3d PositionAfter(const RandomWalkMotion& motion, double elapsed_s) {
+  std::mt19937_64 generator(motion.seed);
+  std::normal_distribution<double> turn(0, motion.turn_rad);
+  Eigen::Vector3d position_m = motion.start_m;
+  double heading_rad = motion.heading_rad;
+  while (true) {
+    const double leg_s = std::min(elapsed_s, motion.turn_every_s);
+    position_m +=
+        leg_s * motion.speed_m_s * Eigen::Vector3d(std::cos(heading_rad), std::sin(heading_rad), 0);
+    elapsed_s -= leg_s;
+    if (!(elapsed_s > 0)) return position_m;
+    if (motion.turn_rad > 0) heading_rad += turn(generator);
+  }
+}
+
 }  // namespace
 
 Pose PoseAt(const MovingObstacle& obstacle, EpisodeTime t) {
   const Eigen::Vector3d p_WO = std::visit(
-      [&](const auto& motion) { return PositionAt(motion, t.seconds()); }, obstacle.motion);
+      [&](const auto& motion) { return PositionAfter(motion, Elapsed(motion, t.seconds())); },
+      obstacle.motion);
   return Pose::FromRollPitchYaw(obstacle.rpy_rad, p_WO);
 }
 

@@ -21,20 +21,60 @@ struct StaticBox {
   Eigen::Vector3d size_m;
 };
 
-/// Straight on from `start_m`, along a unit vector, at a speed; for good or until `stop_at_s`.
+// Every motion has a speed_m_s (>= 0), rests at its start until begin_at_s, and stands still from
+// stop_at_s on (infinite: never).
+
+/// Straight on from `start_m`, along a unit vector, at a speed.
 struct LinearMotion {
   Eigen::Vector3d start_m;
   Eigen::Vector3d direction;  ///< unit length
-  double speed_m_s = 0;       ///< >= 0
-  double stop_at_s = 0;       ///< infinite: never stops
+  double speed_m_s = 0;
+  double stop_at_s = 0;
+  double begin_at_s = 0;
 };
 /// Straight lines from point to point at one speed; rests at the last.
 struct WaypointMotion {
   std::vector<Eigen::Vector3d> points_m;  ///< at least 2, no two neighbours equal
   double speed_m_s = 0;
-  double stop_at_s = 0;  ///< infinite: goes to the last point
+  double stop_at_s = 0;
+  double begin_at_s = 0;
 };
-using Motion = std::variant<LinearMotion, WaypointMotion>;
+/// Straight on at a speed that changes at a constant rate from `change_at_s` on, between rest and
+/// `max_speed_m_s`: what brakes comes to rest and does not turn back.
+struct AcceleratedMotion {
+  Eigen::Vector3d start_m;
+  Eigen::Vector3d direction;  ///< unit length
+  double speed_m_s = 0;       ///< at first
+  double acceleration_m_s2 = 0;
+  double change_at_s = 0;
+  double max_speed_m_s = 0;  ///< may be infinite; not below speed_m_s
+  double stop_at_s = 0;
+  double begin_at_s = 0;
+};
+/// Round a horizontal circle at one speed; begins at `start_angle_rad` from the x axis.
+struct CircleMotion {
+  Eigen::Vector3d center_m;
+  double radius_m = 0;  ///< > 0
+  double start_angle_rad = 0;
+  bool clockwise = false;  ///< as seen from above
+  double speed_m_s = 0;
+  double stop_at_s = 0;
+  double begin_at_s = 0;
+};
+/// At one speed on the level, along headings that change every `turn_every_s` by a normal deviate
+/// of `turn_rad`. A function of the seed: that of the scenario and the obstacle's place in it.
+struct RandomWalkMotion {
+  Eigen::Vector3d start_m;
+  double heading_rad = 0;   ///< at first, from the x axis
+  double turn_rad = 0;      ///< standard deviation, >= 0
+  double turn_every_s = 0;  ///< > 0
+  std::uint64_t seed = 0;
+  double speed_m_s = 0;
+  double stop_at_s = 0;
+  double begin_at_s = 0;
+};
+using Motion =
+    std::variant<LinearMotion, WaypointMotion, AcceleratedMotion, CircleMotion, RandomWalkMotion>;
 
 struct MovingObstacle {
   std::string name;
@@ -68,16 +108,23 @@ struct Scenario {
   double epsilon_m = 0, sigma_obs = 0, qc = 1;
   double velocity_scale = 1, acceleration_scale = 1;
   int num_interpolated = 0, max_iterations = 0;
+  /// Without velocity limits the simulated arm is not held to them either; how far a motion exceeds
+  /// them is recorded.
   bool velocity_limits = true, acceleration_limits = true, position_limits = true;
 
   std::string knowledge;  ///< a word of sdf/world_model.h
   std::string predictor;
+  /// Under prediction, moving things are taken to be thicker by so many standard deviations of
+  /// where they are predicted to be, but by no more than the limit.
+  double growth_sigmas = 0, growth_limit_m = 0;
   double replan_rate_hz = 0;
   double latency_s = 0;  ///< charged to each planning cycle
 
   std::string sensor;
   double sensor_rate_hz = 0;
   std::uint64_t seed = 1;
+
+  std::map<std::string, std::string> choices;  ///< what was chosen, by the choice's name
 
   /// Lines of the values that only other modules can judge (names of robots, configurations,
   /// planners, ...), by their path in the file, so that they can complain as the reader does.
@@ -90,10 +137,20 @@ Pose PoseAt(const MovingObstacle& obstacle, EpisodeTime t);
 /// The names of all scenarios in a folder, sorted.
 std::vector<std::string> ScenarioNames(const std::string& directory);
 
-/// Reads a scenario file. @throws InputError FILE:LINE: KEY: WHY.
-Scenario LoadScenario(const std::string& path);
+/// What a person sets apart from the file, by name: one of the file's choices to choose from, or a
+/// value to put in the place of a key, by its path (core/yaml_reader.h).
+using Settings = std::map<std::string, std::string>;
+
+/// Reads a scenario file, with the chosen parts and the settings in place.
+/// @throws InputError FILE:LINE: KEY: WHY, or `--set KEY: WHY` for what is wrong with a setting.
+Scenario LoadScenario(const std::string& path, const Settings& settings = {});
 /// The same from text; `name` stands for the file in messages.
-Scenario ParseScenario(const std::string& text, const std::string& name);
+Scenario ParseScenario(const std::string& text, const std::string& name,
+                       const Settings& settings = {});
+
+/// What a scenario file lets one choose: the options of each choice, in the file's order.
+/// @throws InputError.
+std::map<std::string, std::vector<std::string>> ScenarioChoices(const std::string& path);
 
 /// The scenario as YAML that ParseScenario reads back to an equal value.
 std::string ToYaml(const Scenario& scenario);

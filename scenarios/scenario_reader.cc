@@ -16,6 +16,10 @@ constexpr int kMaxCellsPerAxis = 512;
 // Bounds against slips such as milliseconds given as seconds; generous for any arm.
 constexpr double kMaxHorizon = 60, kMaxRateHz = 1000;
 constexpr int kMaxStates = 1001;
+constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kShortestLeg_s = 0.01;
+// Objects' fields are padded for it on all sides.
+constexpr double kMaxGrowth_m = 0.5;
 
 void ReadRobot(const YamlReader& top, Scenario& scenario) {
   const YamlReader map = top.GetMap("robot");
@@ -130,42 +134,103 @@ Shape ReadShape(const YamlReader& parent) {
   return shape;
 }
 
-double ReadStop(const YamlReader& map) {
-  return map.Has("stop_at_s") ? map.GetNonNegative("stop_at_s")
-                              : std::numeric_limits<double>::infinity();
+Eigen::Vector3d ReadDirection(const YamlReader& body) {
+  const Eigen::Vector3d direction = body.GetVector3("direction");
+  if (!(direction.norm() > 1e-9)) body.Fail("direction", "must not be zero");
+  return direction.normalized();
+}
+
+double ReadOptional(const YamlReader& map, const char* key, double otherwise) {
+  return map.Has(key) ? map.GetNonNegative(key) : otherwise;
+}
+
+LinearMotion ReadLinear(const YamlReader& body) {
+  LinearMotion motion;
+  motion.start_m = body.GetVector3("start_m");
+  motion.direction = ReadDirection(body);
+  return motion;
+}
+
+WaypointMotion ReadWaypoints(const YamlReader& body) {
+  WaypointMotion motion;
+  for (const YamlReader& point : body.GetMaps("points")) {
+    motion.points_m.push_back(point.GetVector3("position_m"));
+    point.CheckNoUnknownKeys();
+    const std::size_t n = motion.points_m.size();
+    if (n > 1 && (motion.points_m[n - 1] - motion.points_m[n - 2]).norm() < 1e-9) {
+      point.Fail("position_m", "must differ from the point before it");
+    }
+  }
+  if (motion.points_m.size() < 2) body.Fail("points", "must list at least 2 points");
+  return motion;
+}
+
+AcceleratedMotion ReadAccelerated(const YamlReader& body) {
+  AcceleratedMotion motion;
+  motion.start_m = body.GetVector3("start_m");
+  motion.direction = ReadDirection(body);
+  motion.acceleration_m_s2 = body.GetDouble("acceleration_m_s2");
+  motion.change_at_s = ReadOptional(body, "change_at_s", 0);
+  motion.max_speed_m_s = ReadOptional(body, "max_speed_m_s", kNever);
+  if (motion.max_speed_m_s < body.GetNonNegative("speed_m_s")) {
+    body.Fail("max_speed_m_s", "must not be below speed_m_s");
+  }
+  return motion;
+}
+
+CircleMotion ReadCircle(const YamlReader& body) {
+  CircleMotion motion;
+  motion.center_m = body.GetVector3("center_m");
+  motion.radius_m = body.GetPositive("radius_m");
+  motion.start_angle_rad = body.GetDouble("start_angle_rad");
+  motion.clockwise = body.Has("clockwise") && body.GetBool("clockwise");
+  return motion;
+}
+
+RandomWalkMotion ReadRandomWalk(const YamlReader& body) {
+  RandomWalkMotion motion;
+  motion.start_m = body.GetVector3("start_m");
+  motion.heading_rad = body.GetDouble("heading_rad");
+  motion.turn_rad = body.GetNonNegative("turn_rad");
+  motion.turn_every_s = body.GetPositive("turn_every_s");
+  if (motion.turn_every_s < kShortestLeg_s) body.Fail("turn_every_s", "must be at least 0.01 s");
+  return motion;
 }
 
 Motion ReadMotion(const YamlReader& parent) {
   const YamlReader map = parent.GetMap("motion");
-  const std::string kind = ReadKind(map, "motion", parent, {"linear", "waypoints"});
+  const std::string kind = ReadKind(
+      map, "motion", parent, {"linear", "waypoints", "accelerated", "circle", "random_walk"});
   const YamlReader body = map.GetMap(kind);
   Motion motion;
-  if (kind == "linear") {
-    LinearMotion linear;
-    linear.start_m = body.GetVector3("start_m");
-    const Eigen::Vector3d direction = body.GetVector3("direction");
-    if (!(direction.norm() > 1e-9)) body.Fail("direction", "must not be zero");
-    linear.direction = direction.normalized();
-    linear.speed_m_s = body.GetNonNegative("speed_m_s");
-    linear.stop_at_s = ReadStop(body);
-    motion = linear;
-  } else {
-    WaypointMotion waypoints;
-    for (const YamlReader& point : body.GetMaps("points")) {
-      waypoints.points_m.push_back(point.GetVector3("position_m"));
-      point.CheckNoUnknownKeys();
-      const std::size_t n = waypoints.points_m.size();
-      if (n > 1 && (waypoints.points_m[n - 1] - waypoints.points_m[n - 2]).norm() < 1e-9) {
-        point.Fail("position_m", "must differ from the point before it");
-      }
-    }
-    if (waypoints.points_m.size() < 2) body.Fail("points", "must list at least 2 points");
-    waypoints.speed_m_s = body.GetNonNegative("speed_m_s");
-    waypoints.stop_at_s = ReadStop(body);
-    motion = waypoints;
-  }
+  if (kind == "linear") motion = ReadLinear(body);
+  if (kind == "waypoints") motion = ReadWaypoints(body);
+  if (kind == "accelerated") motion = ReadAccelerated(body);
+  if (kind == "circle") motion = ReadCircle(body);
+  if (kind == "random_walk") motion = ReadRandomWalk(body);
+  std::visit(
+      [&](auto& any) {
+        any.speed_m_s = body.GetNonNegative("speed_m_s");
+        any.stop_at_s = ReadOptional(body, "stop_at_s", kNever);
+        any.begin_at_s = ReadOptional(body, "begin_at_s", 0);
+        if (any.stop_at_s < any.begin_at_s) {
+          body.Fail("stop_at_s", "must not be before begin_at_s");
+        }
+      },
+      motion);
   body.CheckNoUnknownKeys();
   return motion;
+}
+
+// Random motions follow from the scenario's seed, each its own way.
+void SeedMotions(Scenario& scenario) {
+  std::uint64_t place = 0;
+  for (MovingObstacle& obstacle : scenario.moving_obstacles) {
+    if (RandomWalkMotion* const walk = std::get_if<RandomWalkMotion>(&obstacle.motion)) {
+      walk->seed = 1000 * scenario.seed + place;
+    }
+    ++place;
+  }
 }
 
 void ReadMovingObstacles(const YamlReader& top, Scenario& scenario, std::set<std::string>& names) {
@@ -210,6 +275,12 @@ void ReadPlanner(const YamlReader& top, Scenario& scenario) {
   if (scenario.max_iterations < 1 || scenario.max_iterations > 100000) {
     map.Fail("max_iterations", "must be from 1 to 100000");
   }
+  const auto size = [&](const char* key, double otherwise) {
+    return map.Has(key) ? map.GetNonNegative(key) : otherwise;
+  };
+  scenario.growth_sigmas = size("growth_sigmas", 0);
+  scenario.growth_limit_m = size("growth_limit_m", 0.1);
+  if (scenario.growth_limit_m > kMaxGrowth_m) map.Fail("growth_limit_m", "must be at most 0.5 m");
   scenario.position_limits = flag("position_limits");
   scenario.velocity_limits = flag("velocity_limits");
   scenario.acceleration_limits = flag("acceleration_limits");
@@ -224,7 +295,7 @@ double ReadRate(const YamlReader& map, const char* key) {
 
 void ReadLoop(const YamlReader& top, Scenario& scenario) {
   scenario.knowledge = top.GetString("knowledge");
-  scenario.predictor = top.GetString("predictor");
+  scenario.predictor = top.Has("predictor") ? top.GetString("predictor") : "kalman_cv";
   scenario.lines["knowledge"] = top.Line("knowledge");
   scenario.lines["predictor"] = top.Line("predictor");
   const YamlReader replanning = top.GetMap("replanning");
@@ -244,8 +315,49 @@ void ReadLoop(const YamlReader& top, Scenario& scenario) {
   scenario.seed = static_cast<std::uint64_t>(seed);
 }
 
-Scenario Read(const YamlReader& top, const std::string& file) {
+struct Choice {
+  std::string chosen;  // by default
+  YamlReader options;
+};
+
+std::map<std::string, Choice> ReadChoices(const YamlReader& top) {
+  std::map<std::string, Choice> choices;
+  if (!top.Has("choices")) return choices;
+  const YamlReader map = top.GetMap("choices");
+  for (const std::string& name : map.Keys()) {
+    const YamlReader choice = map.GetMap(name);
+    YamlReader options = choice.GetMap("options");
+    const std::string chosen = choice.GetChoice("default", options.Keys());
+    choice.CheckNoUnknownKeys();
+    choices.emplace(name, Choice{chosen, std::move(options)});
+  }
+  map.CheckNoUnknownKeys();
+  return choices;
+}
+
+// Puts the chosen parts and the settings into place.
+void Settle(YamlReader& top, const Settings& settings, Scenario& scenario) {
+  const std::map<std::string, Choice> choices = ReadChoices(top);
+  for (const auto& [name, choice] : choices) {
+    const auto setting = settings.find(name);
+    const std::string chosen = setting == settings.end() ? choice.chosen : setting->second;
+    const std::vector<std::string> options = choice.options.Keys();
+    if (std::find(options.begin(), options.end(), chosen) == options.end()) {
+      std::string list;
+      for (const std::string& option : options) list += (list.empty() ? "" : ", ") + option;
+      throw InputError("--set " + name, "must be one of " + list + ", is '" + chosen + "'");
+    }
+    top.Replace(choice.options.GetMap(chosen));
+    scenario.choices[name] = chosen;
+  }
+  for (const auto& [path, value] : settings) {
+    if (choices.count(path) == 0) top.Set(path, value, "--set");
+  }
+}
+
+Scenario Read(YamlReader top, const std::string& file, const Settings& settings) {
   Scenario scenario;
+  Settle(top, settings, scenario);
   scenario.file = file;
   scenario.name =
       top.Has("name") ? top.GetString("name") : std::filesystem::path(file).stem().string();
@@ -261,6 +373,7 @@ Scenario Read(const YamlReader& top, const std::string& file) {
   ReadPlanner(top, scenario);
   ReadLoop(top, scenario);
   top.CheckNoUnknownKeys();
+  SeedMotions(scenario);
 
   const bool known = std::any_of(scenario.static_boxes.begin(), scenario.static_boxes.end(),
                                  [&](const StaticBox& box) { return box.name == scenario.mount; });
@@ -283,10 +396,20 @@ std::vector<std::string> ScenarioNames(const std::string& directory) {
   return names;
 }
 
-Scenario LoadScenario(const std::string& path) { return Read(YamlReader::FromFile(path), path); }
+Scenario LoadScenario(const std::string& path, const Settings& settings) {
+  return Read(YamlReader::FromFile(path), path, settings);
+}
 
-Scenario ParseScenario(const std::string& text, const std::string& name) {
-  return Read(YamlReader::FromText(text, name), name);
+Scenario ParseScenario(const std::string& text, const std::string& name, const Settings& settings) {
+  return Read(YamlReader::FromText(text, name), name, settings);
+}
+
+std::map<std::string, std::vector<std::string>> ScenarioChoices(const std::string& path) {
+  std::map<std::string, std::vector<std::string>> options;
+  for (const auto& [name, choice] : ReadChoices(YamlReader::FromFile(path))) {
+    options[name] = choice.options.Keys();
+  }
+  return options;
 }
 
 }  // namespace sidestep

@@ -60,23 +60,55 @@ std::string ShapeText(const Shape& shape) {
   return "{" + ShapeName(shape) + ": {" + sizes + "}}";
 }
 
-std::string StopText(double stop_at_s) {
-  return std::isfinite(stop_at_s) ? ", stop_at_s: " + Number(stop_at_s) : "";
+std::string TimesText(double begin_at_s, double stop_at_s) {
+  std::string text;
+  if (begin_at_s > 0) text += ", begin_at_s: " + Number(begin_at_s);
+  if (std::isfinite(stop_at_s)) text += ", stop_at_s: " + Number(stop_at_s);
+  return text;
+}
+
+std::string KeysOf(const LinearMotion& motion) {
+  return "linear: {start_m: " + List(motion.start_m) + ", direction: " + List(motion.direction);
+}
+
+std::string KeysOf(const WaypointMotion& motion) {
+  std::string points;
+  for (const Eigen::Vector3d& point : motion.points_m) {
+    points += (points.empty() ? "" : ", ") + ("{position_m: " + List(point) + "}");
+  }
+  return "waypoints: {points: [" + points + "]";
+}
+
+std::string KeysOf(const AcceleratedMotion& motion) {
+  std::string text = "accelerated: {start_m: " + List(motion.start_m) +
+                     ", direction: " + List(motion.direction) +
+                     ", acceleration_m_s2: " + Number(motion.acceleration_m_s2) +
+                     ", change_at_s: " + Number(motion.change_at_s);
+  if (std::isfinite(motion.max_speed_m_s)) {
+    text += ", max_speed_m_s: " + Number(motion.max_speed_m_s);
+  }
+  return text;
+}
+
+std::string KeysOf(const CircleMotion& motion) {
+  return "circle: {center_m: " + List(motion.center_m) + ", radius_m: " + Number(motion.radius_m) +
+         ", start_angle_rad: " + Number(motion.start_angle_rad) +
+         (motion.clockwise ? ", clockwise: true" : "");
+}
+
+std::string KeysOf(const RandomWalkMotion& motion) {
+  return "random_walk: {start_m: " + List(motion.start_m) +
+         ", heading_rad: " + Number(motion.heading_rad) + ", turn_rad: " + Number(motion.turn_rad) +
+         ", turn_every_s: " + Number(motion.turn_every_s);
 }
 
 std::string MotionText(const Motion& motion) {
-  if (const LinearMotion* linear = std::get_if<LinearMotion>(&motion)) {
-    return "{linear: {start_m: " + List(linear->start_m) +
-           ", direction: " + List(linear->direction) + ", speed_m_s: " + Number(linear->speed_m_s) +
-           StopText(linear->stop_at_s) + "}}";
-  }
-  const WaypointMotion& waypoints = std::get<WaypointMotion>(motion);
-  std::string points;
-  for (const Eigen::Vector3d& point : waypoints.points_m) {
-    points += (points.empty() ? "" : ", ") + ("{position_m: " + List(point) + "}");
-  }
-  return "{waypoints: {points: [" + points + "], speed_m_s: " + Number(waypoints.speed_m_s) +
-         StopText(waypoints.stop_at_s) + "}}";
+  return std::visit(
+      [](const auto& any) {
+        return "{" + KeysOf(any) + ", speed_m_s: " + Number(any.speed_m_s) +
+               TimesText(any.begin_at_s, any.stop_at_s) + "}}";
+      },
+      motion);
 }
 
 const char* Word(bool value) { return value ? "true" : "false"; }
@@ -126,6 +158,8 @@ std::string ToYaml(const Scenario& scenario) {
   line("  qc: " + Number(scenario.qc));
   line("  velocity_scale: " + Number(scenario.velocity_scale));
   line("  acceleration_scale: " + Number(scenario.acceleration_scale));
+  line("  growth_sigmas: " + Number(scenario.growth_sigmas));
+  line("  growth_limit_m: " + Number(scenario.growth_limit_m));
   line("  max_iterations: " + std::to_string(scenario.max_iterations));
   line(std::string("  position_limits: ") + Word(scenario.position_limits));
   line(std::string("  velocity_limits: ") + Word(scenario.velocity_limits));

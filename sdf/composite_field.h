@@ -27,9 +27,9 @@ struct MovingField {
 /// it is asked about, and rounds no position to cells.
 ///
 /// An object's field must reach max_distance_m + max_growth_m wherever its grid ends
-/// (MakeObjectField sees to that). Then the composite is continuous, and in free space within max_distance_m it is the
-/// distance to the nearest of all things; inside things that touch or overlap it may
-/// underestimate the depth.
+/// (MakeObjectField sees to that). Then the composite is continuous, and in free space within
+/// max_distance_m it is the distance to the nearest of all things; inside things that touch or
+/// overlap it may underestimate the depth.
 ///
 /// Where the static grid ends, objects still count: the answer is that of the objects that reach
 /// there, max_distance_m if none does; `in_grid` is false either way, because what else is there is

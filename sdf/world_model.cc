@@ -91,9 +91,8 @@ class PredictedWorld final : public MappedWorld {
   explicit PredictedWorld(const WorldModelOptions& options)
       : MappedWorld(options),
         predictor_(MakePredictor(options.predictor)),
-        tracker_(options.grid,
-                 {.max_distance_m = options.max_distance_m + GrowthLimit(options),
-                  .convention = options.convention}) {}
+        tracker_(options.grid, {.max_distance_m = options.max_distance_m + GrowthLimit(options),
+                                .convention = options.convention}) {}
 
   std::vector<PredictedObject> DescribeObjects(
       const std::vector<EpisodeTime>& times) const override {
@@ -108,6 +107,8 @@ class PredictedWorld final : public MappedWorld {
     }
     return described;
   }
+
+  std::vector<TrackEvent> TakeEvents() override { return tracker_.TakeEvents(); }
 
  private:
   struct Belief {

@@ -34,11 +34,11 @@ using TrueObstacles = std::function<std::vector<ObjectObservation>(EpisodeTime)>
 struct WorldModelOptions {
   Knowledge knowledge = Knowledge::kPrediction;
   std::string predictor = "kalman_cv";  ///< a name of sdf/prediction/registry.h
-  /// Under prediction, moving things are taken to be thicker by so many standard deviations of where
-  /// they are predicted to be, in the worst direction, but by no more than the limit [m].
+  /// Under prediction, moving things are taken to be thicker by so many standard deviations of
+  /// where they are predicted to be, in the worst direction, but by no more than the limit [m].
   double growth_sigmas = 0, growth_limit_m = 0.1;
-  GridSpec grid;                        ///< in W
-  double max_distance_m = 0;            ///< fields are clamped here: safety margin + largest sphere
+  GridSpec grid;              ///< in W
+  double max_distance_m = 0;  ///< fields are clamped here: safety margin + largest sphere
   /// Of fields made from cells; full_knowledge has the true shapes of what moves.
   DistanceConvention convention = DistanceConvention::kSurface;
   TrueObstacles true_obstacles;  ///< must be set for full_knowledge
@@ -63,6 +63,9 @@ class WorldModel {
   /// The objects in the latest field and where they are believed to be at `times`, for the record.
   virtual std::vector<PredictedObject> DescribeObjects(
       const std::vector<EpisodeTime>& times) const = 0;
+
+  /// What tracking has noticed since the last call, in order; nothing where nothing is tracked.
+  virtual std::vector<TrackEvent> TakeEvents() { return {}; }
 
   /// What the stages have cost since the last call.
   virtual WorldModelTimes TakeTimes() = 0;

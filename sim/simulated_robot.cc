@@ -18,13 +18,13 @@ Eigen::VectorXd TorqueLimits(const RobotModel& robot) {
 }  // namespace
 
 SimulatedRobot::SimulatedRobot(const RobotModel& robot, World* world,
-                               std::function<void()> after_tick)
+                               std::function<void()> after_tick, double v_scale)
     : world_(*world),
       after_tick_(std::move(after_tick)),
       stiffness_(robot.stiffness()),
       damping_(robot.damping()),
       torque_max_(TorqueLimits(robot)),
-      tracker_(TrackerLimits::Of(robot), 1.0 / World::kTicksPerSecond) {
+      tracker_(TrackerLimits::Of(robot, v_scale), 1.0 / World::kTicksPerSecond) {
   const Eigen::VectorXd q = world_.q();
   if (q.size() != robot.num_joints()) {
     throw std::invalid_argument("SimulatedRobot: the world's arm has another number of joints");

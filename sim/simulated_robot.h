@@ -23,8 +23,11 @@ class SimulatedRobot final : public RobotInterface {
   /// Holds where the world's arm is now.
   /// @param world is stepped by this; must outlive it.
   /// @param after_tick called after each tick of the world.
+  /// @param v_scale of the robot's velocity limits, for the command: above 1 a motion may exceed
+  /// them, and the record shows by how much.
   /// @throws std::invalid_argument if the robot has not as many joints as the world's arm.
-  SimulatedRobot(const RobotModel& robot, World* world, std::function<void()> after_tick);
+  SimulatedRobot(const RobotModel& robot, World* world, std::function<void()> after_tick,
+                 double v_scale = 1);
 
   JointState Read() const override;
   /// As RobotInterface says. What was submitted before for `start` or later is dropped.

@@ -7,6 +7,9 @@
 namespace sidestep {
 namespace {
 
+// Times a robot's velocity limits: what a tracker that needs a limit takes for none.
+constexpr double kUnlimited = 10;
+
 Eigen::VectorXd StartOf(const Scenario& scenario, const RobotModel& robot) {
   if (scenario.q_start.size() > 0) return scenario.q_start;
   const auto found = robot.configurations().find(scenario.start_name);
@@ -31,7 +34,8 @@ Simulation::Simulation(const Scenario& scenario, const RobotModel& robot,
       obstacles_(NamesOf(scenario.moving_obstacles)),
       world_(scenario, model_xml_, joints_, StartOf(scenario, robot)),
       truth_(world_),
-      robot_(robot, &world_, [this] { truth_.Observe(); }),
+      robot_(
+          robot, &world_, [this] { truth_.Observe(); }, scenario.velocity_limits ? 1 : kUnlimited),
       sensor_(MakeSensor(scenario, world_)) {}
 
 }  // namespace sidestep

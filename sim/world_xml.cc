@@ -275,6 +275,15 @@ Pose AppearancePose(const MovingObstacle& obstacle) {
     Eigen::Vector3d operator()(const WaypointMotion& motion) const {
       return motion.points_m.at(1) - motion.points_m.at(0);
     }
+    Eigen::Vector3d operator()(const AcceleratedMotion& motion) const { return motion.direction; }
+    Eigen::Vector3d operator()(const CircleMotion& motion) const {
+      const double angle_rad = motion.start_angle_rad;
+      const Eigen::Vector3d left(-std::sin(angle_rad), std::cos(angle_rad), 0);
+      return motion.clockwise ? Eigen::Vector3d(-left) : left;
+    }
+    Eigen::Vector3d operator()(const RandomWalkMotion& motion) const {
+      return {std::cos(motion.heading_rad), std::sin(motion.heading_rad), 0};
+    }
   };
   const Pose X_WO = PoseAt(obstacle, EpisodeTime(0));
   const Eigen::Vector3d ahead_O = X_WO.RotateInverse(std::visit(FirstLeg{}, obstacle.motion));

@@ -3,10 +3,16 @@
 #include <array>
 
 #include "bench/metrics/motion_metrics.h"
+#include "bench/metrics/prediction_metrics.h"
 #include "bench/metrics/safety_metrics.h"
 
 namespace sidestep {
 namespace {
+
+template <int kMilliseconds>
+double PredictionErrorAfter(const Recording& recording) {
+  return PredictionError(recording, HorizonOffset(kMilliseconds / 1000.0));
+}
 
 constexpr std::array kMetrics = {
     Metric{"first_contact_s", "s", false, "when the robot first touched anything", &FirstContact},
@@ -24,6 +30,16 @@ constexpr std::array kMetrics = {
     Metric{"velocity_use", "1", true, "largest commanded velocity over its limit", &VelocityUse},
     Metric{"replans", "count", false, "planning cycles run", &Replans},
     Metric{"plans_accepted", "count", false, "plans given to the robot", &PlansAccepted},
+    Metric{"prediction_error_100ms_m", "m", true,
+           "obstacles' distance from where they were expected", &PredictionErrorAfter<100>},
+    Metric{"prediction_error_300ms_m", "m", true, "the same, 0.3 s ahead",
+           &PredictionErrorAfter<300>},
+    Metric{"prediction_error_500ms_m", "m", true, "the same, 0.5 s ahead",
+           &PredictionErrorAfter<500>},
+    Metric{"prediction_error_1000ms_m", "m", true, "the same, 1 s ahead",
+           &PredictionErrorAfter<1000>},
+    Metric{"prediction_error_2000ms_m", "m", true, "the same, 2 s ahead",
+           &PredictionErrorAfter<2000>},
 };
 
 }  // namespace

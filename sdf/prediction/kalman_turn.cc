@@ -6,7 +6,7 @@ namespace sidestep {
 namespace {
 
 constexpr double kSpeedNoise = 0.1;  // m^2/s^3, of each axis of the velocity
-constexpr double kTurnNoise = 1;     // rad^2/s^3, of the rate of turn
+constexpr double kTurnNoise = 0.3;   // rad^2/s^3, of the rate of turn
 constexpr double kSmallAngle = 1e-4;
 
 MotionVector Move(const MotionVector& x, double dt_s, MotionMatrix* F) {

@@ -9,7 +9,8 @@ namespace sidestep {
 
 /// Coordinated turn: a horizontal velocity that turns about z at a constant rate, straight on in z,
 /// with white noise of acceleration and of the change of the rate:
-///   x' = x + vx sin(w dt)/w - vy (1 - cos(w dt))/w,  vx' = vx cos(w dt) - vy sin(w dt),  and so on.
+///   x' = x + vx sin(w dt)/w - vy (1 - cos(w dt))/w,  vx' = vx cos(w dt) - vy sin(w dt),  and so
+///   on.
 /// Source: Bar-Shalom, Li & Kirubarajan (2001), section 11.7.1.
 extern const MotionModel kCoordinatedTurn;
 

@@ -1,10 +1,14 @@
 #include "sdf/prediction/motion_filter.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 namespace sidestep {
 namespace {
+
+// Over longer ones, what chance does to the rate of turn would not reach the position.
+constexpr double kLongestStep_s = 0.1;
 
 Eigen::Matrix3d Square(double sigma) { return sigma * sigma * Eigen::Matrix3d::Identity(); }
 
@@ -16,10 +20,14 @@ void AddPriorNoise(int part, MotionMatrix& Q) {
 }
 
 MotionEstimate Propagate(const MotionModel& model, const MotionEstimate& estimate, double dt_s) {
+  const int num_steps = std::max(1, static_cast<int>(std::ceil(std::abs(dt_s) / kLongestStep_s)));
+  const double step_s = dt_s / num_steps;
   MotionMatrix F;
-  MotionEstimate moved;
-  moved.x = model.move(estimate.x, dt_s, &F);
-  moved.P = F * estimate.P * F.transpose() + model.noise(std::abs(dt_s));
+  MotionEstimate moved = estimate;
+  for (int n = 0; n < num_steps; ++n) {
+    moved.x = model.move(moved.x, step_s, &F);
+    moved.P = F * moved.P * F.transpose() + model.noise(std::abs(step_s));
+  }
   return moved;
 }
 
@@ -34,8 +42,7 @@ MotionFilter::MotionFilter(const MotionModel& model, const Sighting& first)
 }
 
 Innovation MotionFilter::Update(const Sighting& sighting) {
-  const MotionEstimate expected =
-      Propagate(model_, estimate_, (sighting.t - t_).seconds());
+  const MotionEstimate expected = Propagate(model_, estimate_, (sighting.t - t_).seconds());
   const Eigen::Matrix3d R = Square(sighting.sigma_m);
   Innovation innovation;
   innovation.residual_m = sighting.p_WO - expected.x.segment<3>(kP);

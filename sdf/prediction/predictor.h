@@ -22,8 +22,8 @@ struct PredictedMotion {
 /// Says where a moving thing will be. One object in, its motion out: no maps, no robot.
 ///
 /// At the time of the latest sighting the motion passes through the pose seen then, also where a
-/// filter would rather stand elsewhere: the object's shape was seen there, and a filter that lags in
-/// a turn must not draw it behind itself. Filters smooth the velocity.
+/// filter would rather stand elsewhere: the object's shape was seen there, and a filter that lags
+/// in a turn must not draw it behind itself. Filters smooth the velocity.
 class ObstaclePredictor {
  public:
   virtual ~ObstaclePredictor() = default;

@@ -13,6 +13,9 @@
 namespace sidestep {
 namespace {
 
+// How far a thing's border may move between two scans, when it comes off another.
+constexpr int kCellsAScan = 2;
+
 std::array<int, 3> Extent(const Component& component) {
   std::array<int, 3> extent;
   for (std::size_t a = 0; a < 3; ++a) extent[a] = component.last[a] - component.first[a] + 1;
@@ -61,22 +64,37 @@ TrackerTimes ObjectTracker::Update(const OccupancyGrid& occupancy, EpisodeTime t
       ++track.missed_scans;  // unless it is found below
     }
   }
+  const std::vector<CellBox> views = LatestViews();
   std::vector<Track*> owners = Associate(components, t);
+  NoteMerges(components, owners, t);
   static_occupancy_ = occupancy;
   for (std::size_t c = 0; c < components.size(); ++c) {
     if (owners[c] != nullptr) {
       Follow(*owners[c], components[c], t);
     } else {
       owners[c] = Begin(components[c], t);
+      const int whole = FindWhole(views, components[c]);
+      Note(whole > 0 ? track_event::kSplit : track_event::kAppeared, *owners[c], t, whole);
     }
-    Classify(*owners[c], components[c], t);
-    if (owners[c]->state == State::kMoving) {
+    Track& track = *owners[c];
+    track.first = components[c].first;
+    track.last = components[c].last;
+    Classify(track, components[c], t);
+    if (track.state == State::kMoving) {
+      const bool is_cut_off = IsCutOff(components[c]);
+      if (is_cut_off != track.partly_seen) {
+        Note(is_cut_off ? track_event::kPartlySeen : track_event::kWhollySeen, track, t);
+      }
+      track.partly_seen = is_cut_off;
       for (const std::size_t cell : components[c].cells) static_occupancy_.cells[cell] = 0;
     }
   }
   std::erase_if(tracks_, [&](const auto& entry) {
     const Track& track = entry.second;
-    return track.missed_scans > (track.state == State::kMoving ? options_.max_missed_scans : 0);
+    const bool is_moving = track.state == State::kMoving;
+    const bool is_lost = track.missed_scans > (is_moving ? options_.max_missed_scans : 0);
+    if (is_lost && is_moving) Note(track_event::kLost, track, t);
+    return is_lost;
   });
   times.track_s = stopwatch.Lap();
   return times;
@@ -90,6 +108,50 @@ std::vector<std::shared_ptr<const TrackedObject>> ObjectTracker::MovingObjects()
     }
   }
   return objects;
+}
+
+void ObjectTracker::Note(const char* what, const Track& track, EpisodeTime t, int other_id) {
+  events_.push_back({t, what, track.object.id, other_id, track.object.latest().p_WO});
+}
+
+std::vector<ObjectTracker::CellBox> ObjectTracker::LatestViews() const {
+  std::vector<CellBox> views;
+  for (const auto& [id, track] : tracks_) {
+    if (track.state != State::kResting) views.push_back({id, track.first, track.last});
+  }
+  return views;
+}
+
+int ObjectTracker::FindWhole(const std::vector<CellBox>& views, const Component& part) {
+  for (const CellBox& view : views) {
+    bool is_inside = true;
+    for (std::size_t a = 0; a < 3; ++a) {
+      is_inside &= part.first[a] >= view.first[a] - kCellsAScan &&
+                   part.last[a] <= view.last[a] + kCellsAScan;
+    }
+    if (is_inside) return view.id;
+  }
+  return 0;
+}
+
+void ObjectTracker::NoteMerges(const std::vector<Component>& components,
+                               const std::vector<Track*>& owners, EpisodeTime t) {
+  for (const auto& [id, track] : tracks_) {
+    if (track.missed_scans != 1) continue;
+    const Eigen::Vector3d p_WExpected = PredictPosition(track.object, t);
+    int merged_with = 0;
+    for (std::size_t c = 0; c < components.size(); ++c) {
+      const bool is_inside =
+          (p_WExpected.array() >= LowCorner(components[c], grid_).array()).all() &&
+          (p_WExpected.array() <= HighCorner(components[c], grid_).array()).all();
+      if (is_inside && owners[c] != nullptr) merged_with = owners[c]->object.id;
+    }
+    if (merged_with > 0) {
+      Note(track_event::kMerged, track, t, merged_with);
+    } else if (track.state == State::kMoving) {
+      Note(track_event::kMissed, track, t);
+    }
+  }
 }
 
 void ObjectTracker::ReopenVanished(const OccupancyGrid& occupancy, EpisodeTime t) {
@@ -120,6 +182,7 @@ std::vector<ObjectTracker::Track*> ObjectTracker::Associate(
   for (const auto& [distance_m, id, c] : pairs) {
     Track& track = tracks_.at(id);
     if (track.missed_scans == 0 || owners[c] != nullptr) continue;
+    if (track.missed_scans > 1) Note(track_event::kFound, track, t);
     track.missed_scans = 0;
     owners[c] = &track;
   }
@@ -165,6 +228,7 @@ void ObjectTracker::Classify(Track& track, const Component& component, EpisodeTi
     if ((p_WO - track.p_WStart).norm() >= moved_m) {
       track.state = State::kMoving;
       TakeShape(track, component);  // now with its field
+      Note(track_event::kMoved, track, t);
     } else {
       rests = t - track.t_start >= track.settle;
     }
@@ -178,6 +242,7 @@ void ObjectTracker::Classify(Track& track, const Component& component, EpisodeTi
   }
   if (rests) {
     track.state = State::kResting;
+    Note(track_event::kRested, track, t);
     track.object.field_O.reset();
     background_.Absorb(track.object.id, component);
   }

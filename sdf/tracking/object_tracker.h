@@ -3,9 +3,11 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/grid.h"
+#include "core/recording.h"
 #include "core/time.h"
 #include "sdf/map/distance_transform.h"
 #include "sdf/tracking/background.h"
@@ -24,6 +26,20 @@ struct ObjectTrackerOptions {
   DistanceConvention convention = DistanceConvention::kSurface;  ///< of objects' fields
   int max_missed_scans = 3;  ///< a moving thing unseen for more scans in a row is given up
 };
+
+/// What a TrackEvent may say; docs/trace.md explains the words.
+namespace track_event {
+inline constexpr const char* kAppeared = "appeared";
+inline constexpr const char* kMoved = "moved";
+inline constexpr const char* kRested = "rested";
+inline constexpr const char* kPartlySeen = "partly_seen";
+inline constexpr const char* kWhollySeen = "wholly_seen";
+inline constexpr const char* kMerged = "merged";
+inline constexpr const char* kSplit = "split";
+inline constexpr const char* kMissed = "missed";
+inline constexpr const char* kFound = "found";
+inline constexpr const char* kLost = "lost";
+}  // namespace track_event
 
 /// What one Update took [s, wall clock], for the report only.
 struct TrackerTimes {
@@ -57,6 +73,9 @@ class ObjectTracker {
   /// The things that move, by id, also those that the latest scan did not show.
   std::vector<std::shared_ptr<const TrackedObject>> MovingObjects() const;
 
+  /// What has been noticed since the last call, in order.
+  std::vector<TrackEvent> TakeEvents() { return std::exchange(events_, {}); }
+
   /// What was filled in the latest scan and does not belong to a moving thing.
   const OccupancyGrid& static_occupancy() const { return static_occupancy_; }
 
@@ -74,8 +93,23 @@ class ObjectTracker {
     std::size_t num_cells = 0;
     bool cut_off = false;  // by the grid's border: there may be more of it
     int missed_scans = 0;
+    std::array<int, 3> first = {0, 0, 0}, last = {0, 0, 0};  // the cells around its latest view
+    bool partly_seen = false;                                // then
   };
 
+  // The cells around a thing when it was last seen.
+  struct CellBox {
+    int id;
+    std::array<int, 3> first, last;
+  };
+
+  std::vector<CellBox> LatestViews() const;  // of what does not rest
+  // The thing whose latest view held all of `part`; 0: none.
+  static int FindWhole(const std::vector<CellBox>& views, const Component& part);
+  void Note(const char* what, const Track& track, EpisodeTime t, int other_id = 0);
+  // Looks for things that are one component now, and for those that were one before.
+  void NoteMerges(const std::vector<Component>& components, const std::vector<Track*>& owners,
+                  EpisodeTime t);
   void ReopenVanished(const OccupancyGrid& occupancy, EpisodeTime t);
   // For each component the track that it belongs to, or nothing.
   std::vector<Track*> Associate(const std::vector<Component>& components, EpisodeTime t);
@@ -95,6 +129,7 @@ class ObjectTracker {
   ObjectTrackerOptions options_;
   Background background_;
   OccupancyGrid static_occupancy_;
+  std::vector<TrackEvent> events_;
   std::map<int, Track> tracks_;  // by id, hence from the oldest to the newest
   int next_id_ = 1;
   std::optional<EpisodeTime> t_last_;

@@ -10,9 +10,9 @@ const Sighting& SightingBefore(const std::vector<Sighting>& history, HorizonOffs
   const auto off_baseline = [&](const Sighting& sighting) {
     return std::abs((latest.t - sighting.t).seconds() - baseline.seconds());
   };
-  return *std::min_element(
-      history.begin(), history.end() - 1,
-      [&](const auto& a, const auto& b) { return off_baseline(a) < off_baseline(b); });
+  return *std::min_element(history.begin(), history.end() - 1, [&](const auto& a, const auto& b) {
+    return off_baseline(a) < off_baseline(b);
+  });
 }
 
 Eigen::Vector3d MeanVelocity(const std::vector<Sighting>& history, HorizonOffset baseline) {

@@ -41,6 +41,20 @@ Recording SmoothReach() {
   }
   recording.cycles.resize(3);
   recording.cycles[1].accepted = true;
+
+  // One obstacle runs along x at 1 m/s and stops at 1 s; another stands far away. From 0.1 s on it
+  // is seen 1 cm too high and expected to go on.
+  recording.obstacles = {"post", "ball"};
+  for (TruthSample& sample : recording.truth) {
+    sample.X_WO = {Pose::Translation({0, 5, 0}),
+                   Pose::Translation({std::min(sample.t.seconds(), 1.0), 0, 0})};
+  }
+  recording.cycles[0].t = EpisodeTime(0.1);
+  PredictedObject& object = recording.cycles[0].objects.emplace_back();
+  for (int i = 0; i <= 25; ++i) {
+    object.t.push_back(EpisodeTime(0.1 + 0.1 * i));
+    object.X_WO.push_back(Pose::Translation({0.1 + 0.1 * i, 0, 0.01}));
+  }
   return recording;
 }
 
@@ -73,12 +87,19 @@ INSTANTIATE_TEST_SUITE_P(
         // The integral of a^2 / 2 over the second, 6, is what the cubic's GP cost is.
         Expected{"gp_cost", 6, 1e-6}, Expected{"jerk_rms", 12, 1e-6},
         Expected{"tracking_error_rad", 1e-3, 1e-12}, Expected{"velocity_use", 0.75, 1e-12},
-        Expected{"replans", 3, 0}, Expected{"plans_accepted", 1, 0}),
+        Expected{"replans", 3, 0}, Expected{"plans_accepted", 1, 0},
+        // The height alone, until the ball stops: then also the 0.1 s that it was expected to go
+        // on.
+        Expected{"prediction_error_100ms_m", 0.01, 1e-12},
+        Expected{"prediction_error_300ms_m", 0.01, 1e-12},
+        Expected{"prediction_error_500ms_m", 0.01, 1e-12},
+        Expected{"prediction_error_1000ms_m", std::hypot(0.1, 0.01), 1e-12}),
     [](const auto& test) { return std::string(test.param.metric); });
 
 TEST(Metrics, AllHaveAKnownAnswerHere) {
-  // A metric that is added wants a row above.
-  EXPECT_EQ(Metrics().size(), 10u);
+  // A metric that is added wants a row above. The one 2 s ahead looks beyond that recording's end.
+  EXPECT_EQ(Metrics().size(), 10u + 5);
+  EXPECT_TRUE(std::isnan(Find("prediction_error_2000ms_m").compute(SmoothReach())));
 }
 
 TEST(Metrics, OfAnEmptyRecordingAreZeroOrNotANumberAndNeverThrow) {

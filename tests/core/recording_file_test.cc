@@ -133,6 +133,8 @@ Recording FullRecording() {
     }
     recording.cycles.push_back(cycle);
   }
+  recording.events = {{EpisodeTime(0.1), "appeared", 1, 0, {0.4, 2, 0.6}},
+                      {EpisodeTime(0.3), "merged", 2, 1, {0.5, 1, 0.7}}};
   recording.metrics = {{"min_clearance_m", -0.04},
                        {"time_to_goal_s", std::numeric_limits<double>::quiet_NaN()}};
   return recording;
@@ -192,6 +194,14 @@ void ExpectEqual(const CycleRecord& a, const CycleRecord& b) {
   for (std::size_t i = 0; i < a.objects.size(); ++i) ExpectEqual(a.objects[i], b.objects[i]);
 }
 
+void ExpectEqual(const TrackEvent& a, const TrackEvent& b) {
+  EXPECT_EQ(a.t, b.t);
+  EXPECT_EQ(a.what, b.what);
+  EXPECT_EQ(a.id, b.id);
+  EXPECT_EQ(a.other_id, b.other_id);
+  EXPECT_EQ(a.p_W, b.p_W);
+}
+
 template <typename T>
 void ExpectEqual(const std::vector<T>& a, const std::vector<T>& b) {
   ASSERT_EQ(a.size(), b.size());
@@ -210,6 +220,7 @@ void ExpectEqual(const Recording& a, const Recording& b) {
   ExpectEqual(a.control, b.control);
   ExpectEqual(a.truth, b.truth);
   ExpectEqual(a.cycles, b.cycles);
+  ExpectEqual(a.events, b.events);
   ASSERT_EQ(a.metrics.size(), b.metrics.size());
   for (const auto& [name, value] : a.metrics) ExpectEqual(value, b.metrics.at(name));
 }

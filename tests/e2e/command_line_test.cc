@@ -65,6 +65,16 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"LatencyBeyondHorizon",
                 {"run", "hsr_walkway", "--latency-ms", "4000"},
                 {"--latency-ms: must not exceed the horizon"}},
+        Mistake{"SettingWithoutAValue", {"run", "hsr_walkway", "--set", "seed"}, {"KEY=VALUE"}},
+        Mistake{"SettingGivenTwice",
+                {"run", "hsr_walkway", "--set", "seed=1", "--set", "seed=2"},
+                {"--set seed: is given twice"}},
+        Mistake{"UnknownPair",
+                {"run", "wam_single_pillar", "--set", "pair=8"},
+                {"--set pair: must be one of 1, 2, 3, 4, 5, 6, 7, is '8'"}},
+        Mistake{"SettingOfNoKey",
+                {"run", "hsr_walkway", "--set", "planner.epsilon=1"},
+                {"--set planner.epsilon: is not a known key"}},
         Mistake{"OutIsAFile",
                 {"run", "hsr_walkway", "--out", SIDESTEP_PROGRAM},
                 {"--out", "cannot be made a folder"}},
@@ -94,7 +104,8 @@ TEST(List, ShowsWhatCanBeNamed) {
   EXPECT_EQ(finished.exit_code, 0);
   EXPECT_THAT(finished.out,
               AllOf(HasSubstr("hsr_walkway"), HasSubstr("full_knowledge"), HasSubstr("gpmp"),
-                    HasSubstr("two_frame"), HasSubstr("panda"), HasSubstr("min_clearance_m")));
+                    HasSubstr("two_frame"), HasSubstr("panda"), HasSubstr("min_clearance_m"),
+                    HasSubstr("--set pair=1|2|3")));
 }
 
 TEST(Doctor, FindsNothingMissingWhereTheTestsRun) {

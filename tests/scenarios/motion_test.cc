@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "scenarios/scenario.h"
@@ -45,6 +46,76 @@ TEST(WaypointMotion, GoesRoundTheCornerAtOneSpeed) {
 TEST(WaypointMotion, StopsOnItsWayWhenToldTo) {
   const WaypointMotion motion{{{0, 0, 0}, {1, 0, 0}, {1, 2, 0}}, 0.5, 3};
   ExpectNear(PositionAt(motion, 60), {1, 0.5, 0});
+}
+
+TEST(AcceleratedMotion, GoesOnAtHalfTheSquareOfTheTime) {
+  const AcceleratedMotion motion{{1, 0, 0}, {0, 1, 0}, 0.5, 2, 1, kNever, kNever, 0};
+  ExpectNear(PositionAt(motion, 1), {1, 0.5, 0});
+  ExpectNear(PositionAt(motion, 3), {1, 0.5 + 0.5 * 2 + 4, 0});
+}
+
+TEST(AcceleratedMotion, DoesNotExceedItsHighestSpeed) {
+  const AcceleratedMotion motion{{0, 0, 0}, {1, 0, 0}, 0, 4, 0, 2, kNever, 0};
+  ExpectNear(PositionAt(motion, 0.5), {0.5, 0, 0});
+  ExpectNear(PositionAt(motion, 2.5), {0.5 + 4, 0, 0});
+}
+
+TEST(AcceleratedMotion, BrakesToRestAndDoesNotTurnBack) {
+  const AcceleratedMotion motion{{0, 0, 0}, {1, 0, 0}, 2, -4, 0.5, kNever, kNever, 0};
+  ExpectNear(PositionAt(motion, 1), {1.5, 0, 0});
+  ExpectNear(PositionAt(motion, 9), {1.5, 0, 0});
+}
+
+TEST(CircleMotion, ComesRoundAfterItsLengthEitherWay) {
+  CircleMotion motion{{1, 2, 0.5}, 0.5, 0, false, 1, kNever, 0};
+  const double round_s = 2 * M_PI * 0.5;
+  ExpectNear(PositionAt(motion, 0), {1.5, 2, 0.5});
+  ExpectNear(PositionAt(motion, round_s / 4), {1, 2.5, 0.5});
+  ExpectNear(PositionAt(motion, round_s), {1.5, 2, 0.5});
+  motion.clockwise = true;
+  ExpectNear(PositionAt(motion, round_s / 4), {1, 1.5, 0.5});
+}
+
+TEST(RandomWalkMotion, GoesAtItsSpeedWithoutJumps) {
+  const RandomWalkMotion motion{{0, 0, 1}, 0.3, 0.5, 0.2, 7, 1.2, kNever, 0};
+  for (double t_s = 0; t_s < 5; t_s += 0.01) {
+    const double way_m = (PositionAt(motion, t_s + 0.01) - PositionAt(motion, t_s)).norm();
+    EXPECT_LE(way_m, 0.012 + 1e-12);
+    EXPECT_GE(way_m, 0.008);  // where it turns it cuts the corner
+  }
+  EXPECT_EQ(PositionAt(motion, 3).z(), 1);
+}
+
+TEST(RandomWalkMotion, IsAFunctionOfItsSeed) {
+  const RandomWalkMotion motion{{0, 0, 1}, 0.3, 0.5, 0.2, 7, 1.2, kNever, 0};
+  RandomWalkMotion other = motion;
+  EXPECT_EQ(PositionAt(motion, 3), PositionAt(other, 3));
+  other.seed = 8;
+  EXPECT_GT((PositionAt(motion, 3) - PositionAt(other, 3)).norm(), 0.01);
+}
+
+TEST(RandomWalkMotion, TurnsAsMuchAsItIsToldTo) {
+  double sum = 0;
+  for (std::uint64_t seed = 0; seed < 500; ++seed) {
+    const RandomWalkMotion motion{{0, 0, 0}, 0, 0.4, 1, seed, 1, kNever, 0};
+    const Eigen::Vector3d second_leg = PositionAt(motion, 2) - PositionAt(motion, 1);
+    sum += std::pow(std::atan2(second_leg.y(), second_leg.x()), 2);
+  }
+  EXPECT_NEAR(std::sqrt(sum / 500), 0.4, 0.04);
+}
+
+TEST(EveryMotion, RestsAtItsStartUntilItBegins) {
+  const Motion motions[] = {
+      LinearMotion{{1, 2, 3}, {1, 0, 0}, 1, kNever, 0.5},
+      WaypointMotion{{{1, 2, 3}, {2, 2, 3}}, 1, kNever, 0.5},
+      AcceleratedMotion{{1, 2, 3}, {1, 0, 0}, 1, 1, 0, kNever, kNever, 0.5},
+      CircleMotion{{0, 2, 3}, 1, 0, false, 1, kNever, 0.5},
+      RandomWalkMotion{{1, 2, 3}, 0, 0.1, 0.5, 1, 1, kNever, 0.5},
+  };
+  for (const Motion& motion : motions) {
+    ExpectNear(PositionAt(motion, 0.5), {1, 2, 3});
+    EXPECT_NEAR((PositionAt(motion, 0.6) - Eigen::Vector3d(1, 2, 3)).norm(), 0.1, 0.01);
+  }
 }
 
 TEST(MovingObstacle, KeepsItsOrientation) {

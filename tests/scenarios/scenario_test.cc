@@ -4,20 +4,47 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <variant>
+#include <vector>
+
+#include "core/input_error.h"
 
 namespace sidestep {
 namespace {
 
 const std::string kFolder = SIDESTEP_SOURCE_DIR "/scenarios";
 
-class EveryScenario : public ::testing::TestWithParam<std::string> {};
+struct Variant {
+  std::string scenario;
+  Settings settings;
+};
+std::ostream& operator<<(std::ostream& stream, const Variant& variant) {
+  stream << variant.scenario;
+  for (const auto& [choice, chosen] : variant.settings) stream << "_" << choice << "_" << chosen;
+  return stream;
+}
+
+// Every scenario with each option of its choices.
+std::vector<Variant> Variants() {
+  std::vector<Variant> variants;
+  for (const std::string& name : ScenarioNames(kFolder)) {
+    variants.push_back({name, {}});
+    for (const auto& [choice, options] : ScenarioChoices(kFolder + "/" + name + ".yaml")) {
+      for (const std::string& option : options) variants.push_back({name, {{choice, option}}});
+    }
+  }
+  return variants;
+}
+
+class EveryScenario : public ::testing::TestWithParam<Variant> {};
 
 TEST_P(EveryScenario, LoadsAndReadsBackAsItWasWritten) {
-  const Scenario scenario = LoadScenario(kFolder + "/" + GetParam() + ".yaml");
+  const Scenario scenario =
+      LoadScenario(kFolder + "/" + GetParam().scenario + ".yaml", GetParam().settings);
   const std::string yaml = ToYaml(scenario);
   const Scenario again = ParseScenario(yaml, "written.yaml");
   EXPECT_EQ(ToYaml(again), yaml);
-  EXPECT_EQ(again.name, GetParam());
+  EXPECT_EQ(again.name, GetParam().scenario);
   EXPECT_EQ(again.grid, scenario.grid);
   ASSERT_EQ(again.moving_obstacles.size(), scenario.moving_obstacles.size());
   for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
@@ -29,8 +56,8 @@ TEST_P(EveryScenario, LoadsAndReadsBackAsItWasWritten) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Shipped, EveryScenario, ::testing::ValuesIn(ScenarioNames(kFolder)),
-                         [](const auto& test) { return test.param; });
+INSTANTIATE_TEST_SUITE_P(Shipped, EveryScenario, ::testing::ValuesIn(Variants()),
+                         [](const auto& test) { return ::testing::PrintToString(test.param); });
 
 TEST(Scenario, EveryValueSurvivesWritingAndReading) {
   const std::string text = R"(
@@ -52,7 +79,8 @@ moving_obstacles:
   - {name: c, shape: {ellipsoid: {semi_axes_m: [0.1, 0.2, 0.3]}},
      motion: {linear: {start_m: [0, 0, 0], direction: [0, 0, 1], speed_m_s: 0}}}
 planner: {name: gpmp, epsilon_m: 0.1, sigma_obs: 0.2, n_int: 19, qc: 2, velocity_scale: 0.75,
-          acceleration_scale: 0.25, max_iterations: 7, velocity_limits: false}
+          acceleration_scale: 0.25, max_iterations: 7, growth_sigmas: 1.5, growth_limit_m: 0.07,
+          velocity_limits: false}
 knowledge: static
 predictor: stationary
 replanning: {rate_hz: 4, latency_s: 0.07}
@@ -68,6 +96,8 @@ seed: 42
   EXPECT_EQ(again.velocity_scale, 0.75);
   EXPECT_EQ(again.acceleration_scale, 0.25);
   EXPECT_EQ(again.max_iterations, 7);
+  EXPECT_EQ(again.growth_sigmas, 1.5);
+  EXPECT_EQ(again.growth_limit_m, 0.07);
   EXPECT_FALSE(again.velocity_limits);
   EXPECT_TRUE(again.acceleration_limits);
   EXPECT_EQ(again.latency_s, 0.07);
@@ -79,6 +109,13 @@ seed: 42
   const Eigen::Vector3d direction =
       std::get<LinearMotion>(again.moving_obstacles[0].motion).direction;
   EXPECT_LT((direction - Eigen::Vector3d(0.6, 0.8, 0)).norm(), 1e-15);
+}
+
+TEST(Scenario, ThatNamesNoPredictorFiltersForAConstantVelocity) {
+  std::string text = ToYaml(LoadScenario(kFolder + "/hsr_walkway.yaml"));
+  const std::size_t line = text.find("predictor: ");
+  text.erase(line, text.find('\n', line) + 1 - line);
+  EXPECT_EQ(ParseScenario(text, "without.yaml").predictor, "kalman_cv");
 }
 
 TEST(Scenario, WithoutANameIsNamedAfterItsFile) {
@@ -96,6 +133,90 @@ TEST(HsrWalkway, HasThePublishedGeometryWhereItWasMeantToBe) {
   EXPECT_EQ(std::get<Box>(hsr.shape).size_m, Eigen::Vector3d(0.48, 0.55, 1.2));
   EXPECT_LT((PoseAt(hsr, EpisodeTime(1)).translation() - Eigen::Vector3d(0.4, 0.6, 0.6)).norm(),
             1e-12);
+}
+
+constexpr char kWithChoices[] = R"(
+description: A scene
+robot: {model: panda, base: {position_m: [0, 0, 0]}}
+choices:
+  pair:
+    default: far
+    options:
+      near: {task: {start: a, goal: b}}
+      far: {task: {start: a, goal: c}, seed: 5}
+horizon: {duration_s: 3, step_s: 0.1}
+workspace: {first_center_m: [-1, -1, -1], cell_m: 0.04, cells: [8, 8, 8]}
+moving_obstacles:
+  - name: a
+    shape: {sphere: {radius_m: 0.1}}
+    motion: {random_walk: {start_m: [0, 0, 0], heading_rad: 0, turn_rad: 0.1, turn_every_s: 0.2,
+                           speed_m_s: 1}}
+planner: {name: gpmp, epsilon_m: 0.1, sigma_obs: 0.2, n_int: 1}
+knowledge: static
+replanning: {rate_hz: 4, latency_s: 0.07}
+sensor: {name: occupancy, rate_hz: 15}
+seed: 42
+)";
+
+Scenario WithSettings(const Settings& settings) {
+  return ParseScenario(kWithChoices, "scene.yaml", settings);
+}
+
+std::string Complaint(const Settings& settings) {
+  try {
+    WithSettings(settings);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "was accepted";
+}
+
+TEST(Choices, PutTheKeysOfTheirOptionInPlace) {
+  EXPECT_EQ(WithSettings({}).goal_name, "c");
+  EXPECT_EQ(WithSettings({}).seed, 5u);
+  EXPECT_EQ(WithSettings({{"pair", "near"}}).goal_name, "b");
+  EXPECT_EQ(WithSettings({{"pair", "near"}}).seed, 42u);
+  EXPECT_EQ(WithSettings({{"pair", "near"}}).choices, (Settings{{"pair", "near"}}));
+}
+
+TEST(Choices, OfAnOptionThatIsNotThereNameThoseThatAre) {
+  EXPECT_EQ(Complaint({{"pair", "9"}}), "--set pair: must be one of near, far, is '9'");
+}
+
+TEST(Settings, TakeThePlaceOfTheFilesValues) {
+  EXPECT_EQ(WithSettings({{"planner.epsilon_m", "0.25"}}).epsilon_m, 0.25);
+  EXPECT_EQ(WithSettings({{"task.goal", "[1, 2]"}}).q_goal, Eigen::Vector2d(1, 2));
+  EXPECT_EQ(WithSettings({{"planner.qc", "3"}}).qc, 3);  // a key that the file leaves out
+  const Scenario slow = WithSettings({{"moving_obstacles[0].motion.random_walk.speed_m_s", "0.5"}});
+  EXPECT_EQ(std::get<RandomWalkMotion>(slow.moving_obstacles[0].motion).speed_m_s, 0.5);
+}
+
+TEST(Settings, OfTheSeedMoveWhatWalksAtRandom) {
+  const auto end = [](const Settings& settings) {
+    return PoseAt(WithSettings(settings).moving_obstacles[0], EpisodeTime(3)).translation();
+  };
+  EXPECT_EQ(end({}), end({{"seed", "5"}}));
+  EXPECT_NE(end({}), end({{"seed", "6"}}));
+}
+
+TEST(Settings, ThatAreWrongAreBlamedOnThePersonWhoSetThem) {
+  EXPECT_EQ(Complaint({{"planner.epsilon_m", "-1"}}),
+            "--set planner.epsilon_m: must be >= 0, is -1");
+  EXPECT_EQ(Complaint({{"planner.epsilon_m", "wide"}}),
+            "--set planner.epsilon_m: must be a number, is 'wide'");
+  EXPECT_EQ(Complaint({{"robot.base", "{position_m: [0, 0]}"}}),
+            "--set robot.base.position_m: must have 3 numbers, has 2");
+  EXPECT_THAT(Complaint({{"planner.epsilonm", "1"}}),
+              ::testing::StartsWith("--set planner.epsilonm: is not a known key"));
+  EXPECT_EQ(Complaint({{"planer.epsilon_m", "1"}}),
+            "--set planer.epsilon_m: leads nowhere: there is no 'planer'");
+  EXPECT_EQ(Complaint({{"moving_obstacles[1].name", "b"}}),
+            "--set moving_obstacles[1].name: leads nowhere: there is no '1'");
+  EXPECT_EQ(Complaint({{"seed.of", "1"}}),
+            "--set seed.of: leads nowhere: what is there holds no keys");
+  EXPECT_THAT(Complaint({{"planner.qc", "[1"}}),
+              ::testing::StartsWith("--set planner.qc: is not valid YAML"));
+  EXPECT_EQ(Complaint({{"..", "1"}}), "--set ..: is no key");
 }
 
 }  // namespace

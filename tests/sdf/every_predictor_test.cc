@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <random>
@@ -53,12 +55,33 @@ TEST_P(EveryPredictor, AnswersThePoseThatWasSeenAtTheTimeOfTheLatestSighting) {
 TEST_P(EveryPredictor, IsFiniteAndContinuousBeforeAndAfterThatTime) {
   constexpr double kStep_s = 1e-9;
   for (const TrackedObject& object : Objects()) {
+    const PredictedMotion motion = predictor_->Predict(object);
     for (double t_s = -1; t_s < 10; t_s += 0.01) {
-      const Pose now = predictor_->PredictPose(object, EpisodeTime(t_s));
-      const Pose next = predictor_->PredictPose(object, EpisodeTime(t_s + kStep_s));
+      const Pose now = motion.X_WO(EpisodeTime(t_s));
+      const Pose next = motion.X_WO(EpisodeTime(t_s + kStep_s));
       ASSERT_TRUE(now.translation().allFinite());
       // Two sightings a microsecond apart make some 50 km/s: still no jump.
       ASSERT_LT((next.translation() - now.translation()).norm(), 1e-3);
+    }
+  }
+}
+
+TEST_P(EveryPredictor, IsAsSureAsTheSightingAtItsTimeAndNoSurerLater) {
+  for (const TrackedObject& object : Objects()) {
+    const PredictedMotion motion = predictor_->Predict(object);
+    const double variance_m2 = std::pow(object.latest().sigma_m, 2);
+    const Eigen::Matrix3d seen = motion.covariance_m2(object.latest().t);
+    EXPECT_LT((seen - variance_m2 * Eigen::Matrix3d::Identity()).norm(), 1e-9 * variance_m2);
+    double least_m2 = variance_m2;
+    for (int i = 1; i <= 30; ++i) {
+      const Eigen::Matrix3d later =
+          motion.covariance_m2(object.latest().t + HorizonOffset(0.1 * i));
+      ASSERT_TRUE(later.allFinite());
+      EXPECT_LT((later - later.transpose()).norm(), 1e-9 * later.norm());
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(later);
+      EXPECT_GE(axes.eigenvalues()(0), 0.99 * variance_m2);
+      EXPECT_GE(later.trace(), 0.99 * 3 * least_m2);
+      least_m2 = later.trace() / 3;
     }
   }
 }

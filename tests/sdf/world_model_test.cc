@@ -47,6 +47,7 @@ WorldModelOptions Options(Knowledge knowledge) {
   options.knowledge = knowledge;
   options.grid = Grid();
   options.max_distance_m = kClamp_m;
+  options.predictor = "two_frame";  // exact for whole cells a frame
   if (knowledge == Knowledge::kFullKnowledge) options.true_obstacles = &Truth;
   return options;
 }
@@ -228,6 +229,47 @@ TEST(Knowledge, HasAWordForEachKindAndBack) {
   }
   EXPECT_EQ(ToString(Knowledge::kExecuteAndUpdate), "execute_and_update");
   EXPECT_THROW(KnowledgeFromString("omniscience"), std::invalid_argument);
+}
+
+TEST(GrownObjects, AreThickerByTheStandardDeviationsAskedForUpToTheLimit) {
+  const auto field_with = [](double sigmas) {
+    WorldModelOptions options = Options(Knowledge::kPrediction);
+    options.growth_sigmas = sigmas;
+    options.growth_limit_m = 0.07;
+    const auto world = MakeWorldModel(options);
+    for (int frame = 0; frame <= 15; ++frame) world->Observe(ScanAt(EpisodeTime(frame / 30.0)));
+    return world->MakeField();
+  };
+  // Two centimetres beside the box, which is predicted exactly.
+  const auto distance_m = [](const DistanceField& field, double t_s) {
+    const Eigen::Vector3d p_WO = PassingBox().p_WO(EpisodeTime(t_s));
+    return field.Sample(p_WO + Eigen::Vector3d(0.14, 0, 0), EpisodeTime(t_s)).distance_m;
+  };
+  const auto plain = field_with(0), grown = field_with(2);
+  // The sighting: a cell's 4 cm / sqrt(12). From two, 0.1 s apart, after 0.05 s: times
+  // sqrt(1.5^2 + 0.5^2). After a second the limit holds.
+  const double sigma_m = 0.04 / std::sqrt(12.0);
+  EXPECT_NEAR(distance_m(*plain, 0.5) - distance_m(*grown, 0.5), 2 * sigma_m, 1e-9);
+  EXPECT_NEAR(distance_m(*plain, 0.55) - distance_m(*grown, 0.55), 2 * sigma_m * std::sqrt(2.5),
+              1e-9);
+  EXPECT_NEAR(distance_m(*plain, 1.5) - distance_m(*grown, 1.5), 0.07, 1e-9);
+}
+
+TEST(GrownObjects, GoOnToTheClampWithoutAJump) {
+  WorldModelOptions options = Options(Knowledge::kPrediction);
+  options.growth_sigmas = 2;
+  const auto world = MakeWorldModel(options);
+  for (int frame = 0; frame <= 15; ++frame) world->Observe(ScanAt(EpisodeTime(frame / 30.0)));
+  const auto field = world->MakeField();
+  const EpisodeTime t(1);
+  const Eigen::Vector3d p_WO = PassingBox().p_WO(t);
+  double last_m = field->Sample(p_WO, t).distance_m;
+  for (double x = 0; x < 0.7; x += 0.001) {
+    const double next_m = field->Sample(p_WO - Eigen::Vector3d(x, 0, 0), t).distance_m;
+    EXPECT_LT(std::abs(next_m - last_m), 0.0015) << x;
+    last_m = next_m;
+  }
+  EXPECT_EQ(last_m, kClamp_m);
 }
 
 }  // namespace

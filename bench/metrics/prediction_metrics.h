@@ -1,0 +1,14 @@
+#pragma once
+
+#include "core/recording.h"
+#include "core/time.h"
+
+namespace sidestep {
+
+/// How far predictions were off [m]: the root mean square, over all planning cycles and the objects
+/// in them, of the distance from where the box around an object was predicted to be `ahead` of the
+/// cycle to where the obstacle truly was then. An object is taken for the obstacle that was nearest
+/// to it in that cycle. NaN if nothing was predicted so far ahead, or the episode ended before.
+double PredictionError(const Recording& recording, HorizonOffset ahead);
+
+}  // namespace sidestep

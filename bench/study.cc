@@ -1,0 +1,139 @@
+#include "bench/study.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <random>
+#include <stdexcept>
+
+#include "bench/metrics/registry.h"
+
+namespace sidestep {
+namespace {
+
+void CheckFinite(const Recording& recording) {
+  for (const ControlSample& tick : recording.control) {
+    if (!tick.q.allFinite() || !tick.v.allFinite() || !tick.q_command.allFinite() ||
+        !tick.torque.allFinite()) {
+      throw std::runtime_error("a number is not finite at " + std::to_string(tick.t.seconds()) +
+                               " s");
+    }
+  }
+}
+
+std::vector<std::string> ValuesOf(const std::vector<StudyRow>& rows, const std::string& factor) {
+  std::vector<std::string> values;
+  for (const StudyRow& row : rows) {
+    const std::string& value = row.factors.at(factor);
+    if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
+  }
+  return values;
+}
+
+struct Tally {
+  int goal = 0, episodes = 0;
+
+  void Count(const StudyRow& row) {
+    ++episodes;
+    goal += row.outcome == ToString(Outcome::kGoal) ? 1 : 0;
+  }
+  std::string Text() const { return std::to_string(goal) + "/" + std::to_string(episodes); }
+};
+
+// A field of a CSV file, quoted where it must be.
+std::string Field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+}  // namespace
+
+StudyRow RunStudyEpisode(const Scenario& scenario, const RobotModel& robot,
+                         const WorldFactory& make_world,
+                         const std::map<std::string, std::string>& factors) {
+  StudyRow row;
+  row.factors = factors;
+  try {
+    const EpisodeResult result = RunEpisode(scenario, robot, make_world);
+    CheckFinite(result.recording);
+    row.outcome = ToString(result.outcome);
+    row.metrics = result.recording.metrics;
+  } catch (const std::exception& error) {
+    row.outcome = "failed";
+    row.error = error.what();
+  }
+  return row;
+}
+
+void VaryObstacles(Scenario& scenario, std::uint64_t seed) {
+  std::mt19937_64 generator(seed);
+  const double speed_factor = std::uniform_real_distribution<double>(0.75, 1.3)(generator);
+  const double delay_s = std::uniform_real_distribution<double>(0, 0.5)(generator);
+  for (MovingObstacle& obstacle : scenario.moving_obstacles) {
+    std::visit(
+        [&](auto& motion) {
+          motion.speed_m_s *= speed_factor;
+          motion.begin_at_s += delay_s;
+          motion.stop_at_s += delay_s;
+        },
+        obstacle.motion);
+  }
+}
+
+std::string StudyCsv(const std::vector<StudyRow>& rows) {
+  std::string text;
+  if (rows.empty()) return text;
+  for (const auto& [factor, value] : rows.front().factors) text += Field(factor) + ",";
+  text += "outcome,error";
+  for (const Metric& metric : Metrics()) text += std::string(",") + metric.name;
+  text += "\n";
+  for (const StudyRow& row : rows) {
+    for (const auto& [factor, value] : row.factors) text += Field(value) + ",";
+    text += row.outcome + "," + Field(row.error);
+    for (const Metric& metric : Metrics()) {
+      const auto found = row.metrics.find(metric.name);
+      char number[32] = "";
+      if (found != row.metrics.end() && !std::isnan(found->second)) {
+        std::snprintf(number, sizeof number, "%.9g", found->second);
+      }
+      text += std::string(",") + number;
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::string OutcomeTable(const std::vector<StudyRow>& rows, const std::string& down,
+                         const std::string& across) {
+  const std::vector<std::string> lines = ValuesOf(rows, down), columns = ValuesOf(rows, across);
+  std::map<std::string, std::map<std::string, Tally>> cells;
+  std::map<std::string, Tally> totals;
+  std::map<std::string, std::map<std::string, int>> endings;
+  for (const StudyRow& row : rows) {
+    const std::string& column = row.factors.at(across);
+    cells[row.factors.at(down)][column].Count(row);
+    totals[column].Count(row);
+    ++endings[row.outcome][column];
+  }
+  std::string text = "| " + down + " |";
+  for (const std::string& column : columns) text += " " + column + " |";
+  text += "\n|---|";
+  for (std::size_t i = 0; i < columns.size(); ++i) text += "---|";
+  for (const std::string& line : lines) {
+    text += "\n| " + line + " |";
+    for (const std::string& column : columns) text += " " + cells[line][column].Text() + " |";
+  }
+  text += "\n| all |";
+  for (const std::string& column : columns) text += " " + totals[column].Text() + " |";
+  for (auto& [outcome, counts] : endings) {
+    if (outcome == ToString(Outcome::kGoal)) continue;
+    text += "\n| " + outcome + " |";
+    for (const std::string& column : columns) text += " " + std::to_string(counts[column]) + " |";
+  }
+  return text + "\n";
+}
+
+}  // namespace sidestep

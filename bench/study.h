@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "bench/episode.h"
+#include "robot/robot_model.h"
+#include "scenarios/scenario.h"
+
+namespace sidestep {
+
+/// One episode of a study: what was varied, and what came of it.
+struct StudyRow {
+  std::map<std::string, std::string> factors;  ///< e.g. behaviour: stop; the same names in all rows
+  std::string outcome;                         ///< a word of Outcome, or "failed"
+  std::string error;                           ///< why, if it failed
+  std::map<std::string, double> metrics;       ///< empty if it failed
+};
+
+/// Runs an episode. One that throws, or in which a number is not finite, is a row too: it failed.
+StudyRow RunStudyEpisode(const Scenario& scenario, const RobotModel& robot,
+                         const WorldFactory& make_world,
+                         const std::map<std::string, std::string>& factors);
+
+/// Makes all moving obstacles faster or slower by one factor from 0.75 to 1.3 and lets them all
+/// begin later by up to 0.5 s: what a seed changes of an episode besides random walks.
+void VaryObstacles(Scenario& scenario, std::uint64_t seed);
+
+/// All rows, with a column for each factor and each metric.
+std::string StudyCsv(const std::vector<StudyRow>& rows);
+
+/// A Markdown table: how many episodes reached the goal touching nothing, of how many, for each
+/// value of one factor (down) and another (across), in the order in which they come; below it how
+/// the others ended.
+std::string OutcomeTable(const std::vector<StudyRow>& rows, const std::string& down,
+                         const std::string& across);
+
+}  // namespace sidestep

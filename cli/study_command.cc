@@ -1,0 +1,153 @@
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "bench/reproduce/parallel.h"
+#include "bench/result_file.h"
+#include "bench/study.h"
+#include "cli/command.h"
+#include "cli/number_range.h"
+#include "cli/wiring.h"
+
+namespace sidestep {
+namespace {
+
+struct StudyOptions {
+  std::string scenario;
+  std::vector<std::string> settings, knowledge, predictors;
+  std::vector<double> speeds;
+  int episodes = 0, jobs = 1;
+  std::string down, across, out = "out/study";
+};
+
+using Factors = std::map<std::string, std::string>;
+
+// Every combination of `cases` with the values of one more factor.
+std::vector<Factors> Cross(const std::vector<Factors>& cases, const std::string& factor,
+                           const std::vector<std::string>& values) {
+  if (values.empty()) return cases;
+  std::vector<Factors> crossed;
+  for (const Factors& one : cases) {
+    for (const std::string& value : values) {
+      crossed.push_back(one);
+      crossed.back()[factor] = value;
+    }
+  }
+  return crossed;
+}
+
+std::string Short(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", value);
+  return text;
+}
+
+// What varies: the file's choices that no setting fixes, then what the flags list.
+std::vector<Factors> Cases(const StudyOptions& options, const Settings& settings,
+                           const DataPaths& paths) {
+  std::vector<Factors> cases = {{}};
+  for (const auto& [choice, values] : ScenarioChoices(FindScenario(options.scenario, paths))) {
+    if (settings.count(choice) == 0) cases = Cross(cases, choice, values);
+  }
+  std::vector<std::string> speeds, seeds;
+  for (const double speed : options.speeds) speeds.push_back(Short(speed));
+  for (int seed = 1; seed <= options.episodes; ++seed) seeds.push_back(std::to_string(seed));
+  cases = Cross(cases, "speed_m_s", speeds);
+  cases = Cross(cases, "knowledge", options.knowledge);
+  cases = Cross(cases, "predictor", options.predictors);
+  return Cross(cases, "seed", seeds);
+}
+
+Problem MakeCase(const StudyOptions& options, Settings settings, const Factors& factors,
+                 const DataPaths& paths) {
+  Overrides overrides;
+  for (const auto& [factor, value] : factors) {
+    if (factor == "speed_m_s") {
+      overrides.speed_m_s = std::stod(value);
+    } else if (factor == "knowledge") {
+      overrides.knowledge = value;
+    } else if (factor == "predictor") {
+      overrides.predictor = value;
+    } else {
+      settings[factor] = value;  // the seed and the choices
+    }
+  }
+  overrides.settings = settings;
+  Problem problem = LoadProblem(options.scenario, overrides, paths);
+  if (options.episodes > 0) VaryObstacles(problem.scenario, problem.scenario.seed);
+  return problem;
+}
+
+int Study(const StudyOptions& options) {
+  const DataPaths paths = FindDataPaths();
+  const Settings settings = ParseSettings(options.settings);
+  const std::vector<Factors> cases = Cases(options, settings, paths);
+  for (const std::string* const factor : {&options.down, &options.across}) {
+    if (cases.front().count(*factor) == 0) {
+      throw InputError(factor == &options.down ? "--down" : "--across",
+                       "'" + *factor + "' does not vary in this study");
+    }
+  }
+  MakeCase(options, settings, cases.front(), paths);  // complain before the work begins
+  const std::string out = MakeFolder(options.out);
+
+  std::vector<StudyRow> rows(cases.size());
+  std::mutex printing;
+  std::size_t num_done = 0;
+  RunTasks(static_cast<int>(cases.size()), options.jobs, [&](int i) {
+    const auto n = static_cast<std::size_t>(i);
+    const Problem problem = MakeCase(options, settings, cases[n], paths);
+    rows[n] = RunStudyEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths), cases[n]);
+    const std::lock_guard lock(printing);
+    ++num_done;
+    if (num_done % 50 == 0) std::fprintf(stderr, "%zu of %zu\n", num_done, cases.size());
+  });
+
+  WriteTextFile(out + "/study.csv", StudyCsv(rows));
+  const std::string table = OutcomeTable(rows, options.down, options.across);
+  WriteTextFile(out + "/study.md", table);
+  std::printf("%s\nwritten %s/study.csv, %s/study.md\n", table.c_str(), out.c_str(), out.c_str());
+  const bool failed = std::any_of(rows.begin(), rows.end(),
+                                  [](const StudyRow& row) { return row.outcome == "failed"; });
+  return failed ? 1 : 0;
+}
+
+}  // namespace
+
+void AddStudyCommand(CommandLine& line) {
+  auto options = std::make_shared<StudyOptions>();
+  CLI::App* const study = line.app.add_subcommand(
+      "study",
+      "Run every combination of a scenario's choices and of the flags below; one row an episode "
+      "in study.csv, a table of outcomes in study.md");
+  study->add_option("SCENARIO", options->scenario, "A name (see `sidestep list`) or a path")
+      ->required();
+  study->add_option("--set", options->settings, "KEY=VALUE, as in `sidestep run`; fixes a choice")
+      ->allow_extra_args(false);
+  study->add_option("--knowledge", options->knowledge, "Kinds of knowledge, with commas")
+      ->delimiter(',');
+  study->add_option("--predictor", options->predictors, "Predictors, with commas")->delimiter(',');
+  study
+      ->add_option("--speed", options->speeds, "Speeds of every moving obstacle [m/s], with commas")
+      ->delimiter(',')
+      ->check(NumberFrom(0.0, 100.0));
+  study
+      ->add_option("--episodes", options->episodes,
+                   "Episodes of each combination, seeds 1, 2, ...: each changes the obstacles' "
+                   "speed (x 0.75 to 1.3) and start (0 to 0.5 s later)")
+      ->check(NumberFrom(0, 100000));
+  study->add_option("--down", options->down, "What the table lists down: a choice, speed_m_s, ...")
+      ->required();
+  study->add_option("--across", options->across, "What it lists across: knowledge, predictor, ...")
+      ->required();
+  study->add_option("-j,--jobs", options->jobs, "Episodes at a time [1]")
+      ->check(NumberFrom(1, 256));
+  study->add_option("--out", options->out, "Folder for the results [out/study]");
+  study->callback([&line, options] { line.exit_code = Study(*options); });
+}
+
+}  // namespace sidestep
