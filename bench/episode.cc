@@ -8,6 +8,7 @@
 
 #include "bench/metrics/motion_metrics.h"
 #include "bench/metrics/registry.h"
+#include "bench/planner_settings.h"
 #include "core/cpu_time.h"
 #include "planner/registry.h"
 #include "planner/replanner.h"
@@ -33,21 +34,6 @@ WorldModelOptions MakeWorldModelOptions(const Scenario& scenario, const RobotMod
     options.true_obstacles = [truth = world.truth](EpisodeTime t) { return truth->ObstaclesAt(t); };
   }
   return options;
-}
-
-PlannerSettings MakePlannerSettings(const Scenario& scenario) {
-  PlannerSettings settings;
-  settings.epsilon_m = scenario.epsilon_m;
-  settings.sigma_obs = scenario.sigma_obs;
-  settings.num_interpolated = scenario.num_interpolated;
-  settings.qc = scenario.qc;
-  settings.velocity_scale = scenario.velocity_scale;
-  settings.acceleration_scale = scenario.acceleration_scale;
-  settings.max_iterations = scenario.max_iterations;
-  settings.position_limits = scenario.position_limits;
-  settings.velocity_limits = scenario.velocity_limits;
-  settings.acceleration_limits = scenario.acceleration_limits;
-  return settings;
 }
 
 Recording BeginRecording(const Scenario& scenario, const RobotModel& robot,

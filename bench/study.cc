@@ -7,6 +7,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "bench/free_path_search.h"
 #include "bench/metrics/registry.h"
 
 namespace sidestep {
@@ -65,6 +66,16 @@ StudyRow RunStudyEpisode(const Scenario& scenario, const RobotModel& robot,
     row.outcome = "failed";
     row.error = error.what();
   }
+  return row;
+}
+
+StudyRow RunStudySearch(const Scenario& scenario, const RobotModel& robot, int max_guesses,
+                        const std::map<std::string, std::string>& factors) {
+  const FreePath path = SearchFreePath(scenario, robot, max_guesses, scenario.seed);
+  StudyRow row;
+  row.factors = factors;
+  row.outcome = ToString(path.found ? Outcome::kGoal : Outcome::kCollision);
+  row.metrics["min_clearance_m"] = path.clearance_m;
   return row;
 }
 

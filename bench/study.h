@@ -24,6 +24,11 @@ StudyRow RunStudyEpisode(const Scenario& scenario, const RobotModel& robot,
                          const WorldFactory& make_world,
                          const std::map<std::string, std::string>& factors);
 
+/// Looks for a free motion (bench/free_path_search.h) instead; its outcome is that of an episode:
+/// goal, or collision if none was found. Its one metric is min_clearance_m.
+StudyRow RunStudySearch(const Scenario& scenario, const RobotModel& robot, int max_guesses,
+                        const std::map<std::string, std::string>& factors);
+
 /// Makes all moving obstacles faster or slower by one factor from 0.75 to 1.3 and lets them all
 /// begin later by up to 0.5 s: what a seed changes of an episode besides random walks.
 void VaryObstacles(Scenario& scenario, std::uint64_t seed);

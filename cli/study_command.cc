@@ -12,15 +12,19 @@
 #include "cli/command.h"
 #include "cli/number_range.h"
 #include "cli/wiring.h"
+#include "core/input_error.h"
 
 namespace sidestep {
 namespace {
+
+// Stands in the place of a kind of knowledge: who knows all and has time.
+constexpr const char* kSearch = "search";
 
 struct StudyOptions {
   std::string scenario;
   std::vector<std::string> settings, knowledge, predictors;
   std::vector<double> speeds;
-  int episodes = 0, jobs = 1;
+  int episodes = 0, search = 0, jobs = 1;
   std::string down, across, out = "out/study";
 };
 
@@ -57,7 +61,9 @@ std::vector<Factors> Cases(const StudyOptions& options, const Settings& settings
   for (const double speed : options.speeds) speeds.push_back(Short(speed));
   for (int seed = 1; seed <= options.episodes; ++seed) seeds.push_back(std::to_string(seed));
   cases = Cross(cases, "speed_m_s", speeds);
-  cases = Cross(cases, "knowledge", options.knowledge);
+  std::vector<std::string> knowledge = options.knowledge;
+  if (options.search > 0) knowledge.push_back(kSearch);
+  cases = Cross(cases, "knowledge", knowledge);
   cases = Cross(cases, "predictor", options.predictors);
   return Cross(cases, "seed", seeds);
 }
@@ -69,7 +75,7 @@ Problem MakeCase(const StudyOptions& options, Settings settings, const Factors& 
     if (factor == "speed_m_s") {
       overrides.speed_m_s = std::stod(value);
     } else if (factor == "knowledge") {
-      overrides.knowledge = value;
+      if (value != kSearch) overrides.knowledge = value;
     } else if (factor == "predictor") {
       overrides.predictor = value;
     } else {
@@ -101,7 +107,11 @@ int Study(const StudyOptions& options) {
   RunTasks(static_cast<int>(cases.size()), options.jobs, [&](int i) {
     const auto n = static_cast<std::size_t>(i);
     const Problem problem = MakeCase(options, settings, cases[n], paths);
-    rows[n] = RunStudyEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths), cases[n]);
+    const auto knowledge = cases[n].find("knowledge");
+    const bool search = knowledge != cases[n].end() && knowledge->second == kSearch;
+    rows[n] =
+        search ? RunStudySearch(problem.scenario, problem.robot, options.search, cases[n])
+               : RunStudyEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths), cases[n]);
     const std::lock_guard lock(printing);
     ++num_done;
     if (num_done % 50 == 0) std::fprintf(stderr, "%zu of %zu\n", num_done, cases.size());
@@ -139,6 +149,11 @@ void AddStudyCommand(CommandLine& line) {
       ->add_option("--episodes", options->episodes,
                    "Episodes of each combination, seeds 1, 2, ...: each changes the obstacles' "
                    "speed (x 0.75 to 1.3) and start (0 to 0.5 s later)")
+      ->check(NumberFrom(0, 100000));
+  study
+      ->add_option("--search", options->search,
+                   "Also look for a free motion among so many guesses, knowing all: a further "
+                   "kind of knowledge, `search`")
       ->check(NumberFrom(0, 100000));
   study->add_option("--down", options->down, "What the table lists down: a choice, speed_m_s, ...")
       ->required();

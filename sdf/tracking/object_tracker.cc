@@ -66,7 +66,6 @@ TrackerTimes ObjectTracker::Update(const OccupancyGrid& occupancy, EpisodeTime t
   }
   const std::vector<CellBox> views = LatestViews();
   std::vector<Track*> owners = Associate(components, t);
-  NoteMerges(components, owners, t);
   static_occupancy_ = occupancy;
   for (std::size_t c = 0; c < components.size(); ++c) {
     if (owners[c] != nullptr) {
@@ -89,6 +88,7 @@ TrackerTimes ObjectTracker::Update(const OccupancyGrid& occupancy, EpisodeTime t
       for (const std::size_t cell : components[c].cells) static_occupancy_.cells[cell] = 0;
     }
   }
+  NoteMerges(components, owners, t);
   std::erase_if(tracks_, [&](const auto& entry) {
     const Track& track = entry.second;
     const bool is_moving = track.state == State::kMoving;
@@ -144,7 +144,7 @@ void ObjectTracker::NoteMerges(const std::vector<Component>& components,
       const bool is_inside =
           (p_WExpected.array() >= LowCorner(components[c], grid_).array()).all() &&
           (p_WExpected.array() <= HighCorner(components[c], grid_).array()).all();
-      if (is_inside && owners[c] != nullptr) merged_with = owners[c]->object.id;
+      if (is_inside) merged_with = owners[c]->object.id;
     }
     if (merged_with > 0) {
       Note(track_event::kMerged, track, t, merged_with);

@@ -1,0 +1,164 @@
+#include "bench/free_path_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "bench/planner_settings.h"
+#include "core/shape.h"
+#include "planner/guarded_spheres.h"
+#include "planner/registry.h"
+#include "sdf/distance_field.h"
+
+namespace sidestep {
+namespace {
+
+constexpr double kJudgeStep_s = 0.005, kAfterGoal_s = 0.5;
+constexpr double kViaSpread_rad = 0.7;
+constexpr double kGradientStep_m = 1e-4;
+
+// The distance to the true shapes, where they truly will be.
+class TrueField final : public DistanceField {
+ public:
+  TrueField(const Scenario& scenario, double max_distance_m)
+      : scenario_(scenario), max_distance_m_(max_distance_m) {
+    for (const StaticBox& box : scenario.static_boxes) {
+      still_.push_back({box.X_WO.Inverse(), Box{box.size_m}});
+    }
+  }
+
+  DistanceSample Sample(const Eigen::Vector3d& p_WQ, EpisodeTime t) const override {
+    return SampleAmong(p_WQ, MovingAt(t));
+  }
+  void SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime t,
+                  DistanceSamples& samples) const override {
+    const std::vector<Placed> moving = MovingAt(t);
+    samples.distance_m.resize(p_WQ.cols());
+    samples.gradient_W.resize(3, p_WQ.cols());
+    samples.num_outside = 0;
+    for (Eigen::Index s = 0; s < p_WQ.cols(); ++s) {
+      const DistanceSample sample = SampleAmong(p_WQ.col(s), moving);
+      samples.distance_m(s) = sample.distance_m;
+      samples.gradient_W.col(s) = sample.gradient_W;
+    }
+  }
+  double max_distance_m() const override { return max_distance_m_; }
+
+ private:
+  struct Placed {
+    Pose X_OW;
+    Shape shape;
+    double Distance(const Eigen::Vector3d& p_WQ) const {
+      return SignedDistance(shape, X_OW * p_WQ);
+    }
+  };
+
+  std::vector<Placed> MovingAt(EpisodeTime t) const {
+    std::vector<Placed> moving;
+    for (const MovingObstacle& obstacle : scenario_.moving_obstacles) {
+      moving.push_back({PoseAt(obstacle, t).Inverse(), obstacle.shape});
+    }
+    return moving;
+  }
+
+  DistanceSample SampleAmong(const Eigen::Vector3d& p_WQ, const std::vector<Placed>& moving) const {
+    DistanceSample sample{max_distance_m_, Eigen::Vector3d::Zero(), true};
+    const Placed* nearest = nullptr;
+    for (const std::vector<Placed>* group : {&still_, &moving}) {
+      for (const Placed& placed : *group) {
+        const double distance_m = placed.Distance(p_WQ);
+        if (distance_m < sample.distance_m) {
+          sample.distance_m = distance_m;
+          nearest = &placed;
+        }
+      }
+    }
+    if (nearest == nullptr) return sample;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3d step = kGradientStep_m * Eigen::Vector3d::Unit(axis);
+      sample.gradient_W(axis) =
+          (nearest->Distance(p_WQ + step) - nearest->Distance(p_WQ - step)) / (2 * kGradientStep_m);
+    }
+    return sample;
+  }
+
+  const Scenario& scenario_;
+  double max_distance_m_;
+  std::vector<Placed> still_;
+};
+
+double TrueClearance(const RobotModel& robot, const TrueField& field, const Trajectory& motion) {
+  const std::vector<int> guarded = GuardedSpheres(robot);
+  const double end_s = motion.t_s(motion.num_states() - 1) + kAfterGoal_s;
+  double least_m = std::numeric_limits<double>::infinity();
+  for (int i = 0; i * kJudgeStep_s <= end_s; ++i) {
+    const double t_s = i * kJudgeStep_s;
+    const TrajectoryPoint point = Sample(motion, HorizonOffset(t_s));
+    const SphereCenters centers = robot.ComputeSphereCenters(point.q, false);
+    for (const int s : guarded) {
+      const double distance_m = field.Sample(centers.p_WS.col(s), EpisodeTime(t_s)).distance_m;
+      least_m = std::min(least_m, distance_m - robot.sphere_radii_m()(s));
+    }
+  }
+  return least_m;
+}
+
+// From start to goal over a random configuration at a random time, at rest at both ends.
+Trajectory RandomGuess(const PlanRequest& request, std::mt19937_64& generator) {
+  std::normal_distribution<double> off(0, kViaSpread_rad);
+  std::uniform_real_distribution<double> share(0.2, 0.8);
+  const int K = request.num_states;
+  const Eigen::Index n = request.q_start.size();
+  const double first_s = (request.num_fixed - 1) * request.step_s;
+  const double last_s = (K - 1) * request.step_s;
+  Trajectory knots{Eigen::VectorXd(3), Eigen::MatrixXd(n, 3), Eigen::MatrixXd::Zero(n, 3)};
+  knots.t_s << first_s, first_s + share(generator) * (last_s - first_s), last_s;
+  const double line = share(generator);
+  knots.q << request.q_start, request.q_start + line * (request.q_goal - request.q_start),
+      request.q_goal;
+  for (Eigen::Index j = 0; j < n; ++j) knots.q(j, 1) += off(generator);
+  knots.v.col(1) = (request.q_goal - request.q_start) / (last_s - first_s);
+  Trajectory guess{Eigen::VectorXd::LinSpaced(K, 0, K - 1) * request.step_s,
+                   request.q_start.replicate(1, K), Eigen::MatrixXd::Zero(n, K)};
+  for (int k = request.num_fixed; k < K; ++k) {
+    const TrajectoryPoint point = Sample(knots, HorizonOffset(guess.t_s(k)));
+    guess.q.col(k) = point.q;
+    guess.v.col(k) = point.v;
+  }
+  return guess;
+}
+
+}  // namespace
+
+FreePath SearchFreePath(const Scenario& scenario, const RobotModel& robot, int max_guesses,
+                        std::uint64_t seed) {
+  const TrueField field(scenario, scenario.epsilon_m + robot.largest_sphere_radius_m());
+  const auto planner = MakePlanner(scenario.planner, robot, MakePlannerSettings(scenario));
+  PlanRequest request;
+  request.field = &field;
+  request.step_s = scenario.step_s;
+  request.num_states = static_cast<int>(std::lround(scenario.horizon_s / scenario.step_s)) + 1;
+  request.q_start = scenario.q_start;
+  request.v_start = Eigen::VectorXd::Zero(robot.num_joints());
+  request.q_goal = scenario.q_goal;
+  request.num_fixed = 1 + static_cast<int>(std::ceil(scenario.latency_s / scenario.step_s - 1e-9));
+
+  std::mt19937_64 generator(seed);
+  FreePath best;
+  best.clearance_m = -std::numeric_limits<double>::infinity();
+  while (best.guesses < max_guesses && !best.found) {
+    if (best.guesses > 0) request.initial = RandomGuess(request, generator);
+    ++best.guesses;
+    const PlanResult plan = planner->Plan(request);
+    const double clearance_m = TrueClearance(robot, field, plan.trajectory);
+    if (clearance_m <= best.clearance_m) continue;
+    best.clearance_m = clearance_m;
+    best.trajectory = plan.trajectory;
+    best.found = clearance_m > 0;
+  }
+  return best;
+}
+
+}  // namespace sidestep

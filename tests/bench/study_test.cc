@@ -1,0 +1,121 @@
+#include "bench/study.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "bench/free_path_search.h"
+#include "bench/resolve.h"
+
+namespace sidestep {
+namespace {
+
+using ::testing::HasSubstr;
+
+Scenario Load(const std::string& name, const Settings& settings = {}) {
+  return LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/" + name + ".yaml", settings);
+}
+
+RobotModel RobotOf(const Scenario& scenario) {
+  return RobotModel::Load(SIDESTEP_SOURCE_DIR "/models", scenario.robot, scenario.X_WB);
+}
+
+StudyRow Row(const std::string& behaviour, const std::string& predictor,
+             const std::string& outcome) {
+  StudyRow row;
+  row.factors = {{"behaviour", behaviour}, {"predictor", predictor}};
+  row.outcome = outcome;
+  return row;
+}
+
+TEST(OutcomeTable, CountsGoalsAndSaysHowTheOthersEnded) {
+  const std::vector<StudyRow> rows = {
+      Row("stop", "two_frame", "goal"),      Row("stop", "two_frame", "collision"),
+      Row("stop", "kalman_cv", "goal"),      Row("circle", "two_frame", "failed"),
+      Row("circle", "kalman_cv", "timeout"),
+  };
+  EXPECT_EQ(OutcomeTable(rows, "behaviour", "predictor"),
+            "| behaviour | two_frame | kalman_cv |\n"
+            "|---|---|---|\n"
+            "| stop | 1/2 | 1/1 |\n"
+            "| circle | 0/1 | 0/1 |\n"
+            "| all | 1/3 | 1/2 |\n"
+            "| collision | 1 | 0 |\n"
+            "| failed | 1 | 0 |\n"
+            "| timeout | 0 | 1 |\n");
+}
+
+TEST(StudyCsv, HoldsEveryRowAlsoThoseThatFailed) {
+  std::vector<StudyRow> rows = {Row("stop", "two_frame", "goal"),
+                                Row("stop", "two_frame", "failed")};
+  rows[0].metrics = {{"min_clearance_m", 0.125}, {"first_contact_s", NAN}};
+  rows[1].error = "a \"word\", quoted";
+  const std::string csv = StudyCsv(rows);
+  EXPECT_THAT(csv, HasSubstr("behaviour,predictor,outcome,error,first_contact_s,min_clearance_m,"));
+  EXPECT_THAT(csv, HasSubstr("\nstop,two_frame,goal,,,0.125,"));
+  EXPECT_THAT(csv, HasSubstr("\nstop,two_frame,failed,\"a \"\"word\"\", quoted\","));
+}
+
+TEST(StudyEpisode, ThatThrowsIsARowThatSaysWhy) {
+  const Scenario scenario = Load("hsr_walkway");
+  const WorldFactory broken = [](const Scenario&, const RobotModel&) -> EpisodeWorld {
+    throw std::runtime_error("no world");
+  };
+  const StudyRow row = RunStudyEpisode(scenario, RobotOf(scenario), broken, {{"seed", "1"}});
+  EXPECT_EQ(row.outcome, "failed");
+  EXPECT_EQ(row.error, "no world");
+  EXPECT_EQ(row.factors.at("seed"), "1");
+}
+
+TEST(VaryObstacles, IsAFunctionOfTheSeedAndTheSameForAllObstacles) {
+  const Scenario plain = Load("walkway_behaviours", {{"behaviour", "crossing"}});
+  double last_speed = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Scenario varied = plain, again = plain;
+    VaryObstacles(varied, seed);
+    VaryObstacles(again, seed);
+    EXPECT_EQ(ToYaml(varied), ToYaml(again));
+    const auto& hsr = std::get<LinearMotion>(varied.moving_obstacles[0].motion);
+    const auto& trolley = std::get<LinearMotion>(varied.moving_obstacles[1].motion);
+    EXPECT_NE(hsr.speed_m_s, last_speed);
+    EXPECT_GE(hsr.speed_m_s, 0.75 * 1.4);
+    EXPECT_LE(hsr.speed_m_s, 1.3 * 1.4);
+    EXPECT_NEAR(hsr.speed_m_s / 1.4, trolley.speed_m_s / 1.2, 1e-12);
+    EXPECT_GE(hsr.begin_at_s, 0);
+    EXPECT_LE(hsr.begin_at_s, 0.5);
+    EXPECT_EQ(hsr.begin_at_s, trolley.begin_at_s);
+    last_speed = hsr.speed_m_s;
+  }
+}
+
+TEST(FreePathSearch, FindsTheMotionThatFullKnowledgeFinds) {
+  Scenario scenario = Load("hsr_walkway");
+  const RobotModel robot = RobotOf(scenario);
+  ResolveTask(scenario, robot);
+  const FreePath path = SearchFreePath(scenario, robot, 3, 1);
+  EXPECT_TRUE(path.found);
+  EXPECT_GT(path.clearance_m, 0);
+  const int last = path.trajectory.num_states() - 1;
+  EXPECT_LT((path.trajectory.q.col(0) - scenario.q_start).norm(), 1e-9);
+  EXPECT_LT((path.trajectory.q.col(last) - scenario.q_goal).norm(), 1e-2);
+}
+
+TEST(FreePathSearch, FindsNoneToAGoalOnWhichSomethingStands) {
+  Scenario scenario = Load("hsr_walkway");
+  const RobotModel robot = RobotOf(scenario);
+  ResolveTask(scenario, robot);
+  auto& hsr = std::get<LinearMotion>(scenario.moving_obstacles[0].motion);
+  hsr.start_m.x() = 0.7;  // where the hand shall be
+  hsr.stop_at_s = 2 / hsr.speed_m_s;
+  const FreePath path = SearchFreePath(scenario, robot, 2, 1);
+  EXPECT_FALSE(path.found);
+  EXPECT_EQ(path.guesses, 2);
+  EXPECT_LT(path.clearance_m, 0);
+}
+
+}  // namespace
+}  // namespace sidestep

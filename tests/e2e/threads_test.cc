@@ -1,0 +1,75 @@
+// Nothing is shared between episodes: what runs beside one does not change a bit of it.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "bench/episode.h"
+#include "bench/resolve.h"
+#include "sim/simulation.h"
+
+namespace sidestep {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Problem {
+  Scenario scenario;
+  RobotModel robot;
+};
+
+const std::string kModels = SIDESTEP_SOURCE_DIR "/models";
+
+Problem Load(const std::string& name, const Settings& settings) {
+  Scenario scenario = LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/" + name + ".yaml", settings);
+  RobotModel robot = RobotModel::Load(kModels, scenario.robot, scenario.X_WB);
+  ResolveTask(scenario, robot);
+  return {std::move(scenario), std::move(robot)};
+}
+
+EpisodeWorld MakeWorld(const Scenario& scenario, const RobotModel& robot) {
+  auto simulation = std::make_shared<Simulation>(scenario, robot, kModels);
+  EpisodeWorld world;
+  world.robot = &simulation->robot();
+  world.sensor = &simulation->sensor();
+  world.truth = &simulation->truth();
+  world.model_xml = simulation->model_xml();
+  world.joints = simulation->joints();
+  world.obstacles = simulation->obstacles();
+  world.owner = std::move(simulation);
+  return world;
+}
+
+// The bytes of an episode's trace.
+std::string Trace(const Problem& problem, const std::string& name) {
+  const EpisodeResult result = RunEpisode(problem.scenario, problem.robot, &MakeWorld);
+  const fs::path file = fs::path(::testing::TempDir()) / ("sidestep_threads_" + name + ".h5");
+  WriteRecording(result.recording, file.string());
+  std::ifstream stream(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  fs::remove(file);
+  return bytes;
+}
+
+TEST(TwoEpisodesInTwoThreads, GiveTheSameBitsAsAlone) {
+  const Problem first = Load("hsr_walkway", {});
+  const Problem second = Load("walkway_behaviours", {{"behaviour", "random_walk"}});
+  const std::string first_alone = Trace(first, "a");
+  const std::string second_alone = Trace(second, "b");
+  ASSERT_NE(first_alone, second_alone);
+
+  std::string first_beside, second_beside;
+  std::thread other([&] { first_beside = Trace(first, "c"); });
+  second_beside = Trace(second, "d");
+  other.join();
+  EXPECT_EQ(first_beside, first_alone);
+  EXPECT_EQ(second_beside, second_alone);
+}
+
+}  // namespace
+}  // namespace sidestep
