@@ -29,6 +29,9 @@ WorldModelOptions MakeWorldModelOptions(const Scenario& scenario, const RobotMod
   options.growth_sigmas = scenario.growth_sigmas;
   options.growth_limit_m = scenario.growth_limit_m;
   options.grid = scenario.grid;
+  if (scenario.sensor.camera) {
+    options.unseen = UnseenSpaceFromString(scenario.sensor.camera->unseen);
+  }
   options.max_distance_m = scenario.epsilon_m + robot.largest_sphere_radius_m();
   if (world.truth != nullptr) {
     options.true_obstacles = [truth = world.truth](EpisodeTime t) { return truth->ObstaclesAt(t); };
@@ -96,9 +99,10 @@ class Loop {
   };
 
   double NextEffect() const { return pending_.empty() ? end_s_ + 1 : pending_.front().effect_s; }
-  double NextScan() const { return world_.sensor->NextCapture().seconds(); }
+  double NextScan() const { return world_.sensor->NextDue().seconds(); }
 
   void Advance(double t_s) {
+    now_s_ = std::max(now_s_, t_s);
     world_.robot->AdvanceTo(EpisodeTime(t_s));
     Recording& recording = result_.recording;
     for (ControlSample& tick : world_.robot->TakeControlLog()) {
@@ -122,7 +126,23 @@ class Loop {
       model_->Observe(*scan);
       std::vector<TrackEvent>& events = result_.recording.events;
       for (TrackEvent& event : model_->TakeEvents()) events.push_back(std::move(event));
+      KeepObservation(*scan);
       has_scan_ = true;
+    }
+  }
+
+  void KeepObservation(const Scan& scan) {
+    ObservationRecord& record = result_.recording.observations.emplace_back();
+    record.t = scan.t;
+    record.t_arrival = EpisodeTime(now_s_);
+    const std::vector<std::uint8_t>& cells = model_->Occupancy().cells;
+    last_cells_.resize(cells.size(), 0);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (cells[i] != last_cells_[i]) record.changed_cells.push_back(static_cast<std::int64_t>(i));
+    }
+    last_cells_ = cells;
+    for (const ObjectObservation& object : scan.objects) {
+      record.objects.push_back({object.id, object.X_WO, object.covariance});
     }
   }
 
@@ -178,6 +198,8 @@ class Loop {
   Replanner replanner_;
 
   std::deque<Pending> pending_;
+  std::vector<std::uint8_t> last_cells_;  // filled by the latest scan
+  double now_s_ = 0;
   int cycle_index_ = 0;
   double next_cycle_s_ = 0;
   double end_s_;

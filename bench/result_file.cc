@@ -49,7 +49,7 @@ std::string ResultJson(const EpisodeResult& result, const Scenario& scenario,
       {"epsilon_m", scenario.epsilon_m},          {"sigma_obs", scenario.sigma_obs},
       {"n_int", scenario.num_interpolated},       {"horizon_s", scenario.horizon_s},
       {"latency_s", scenario.latency_s},          {"replan_rate_hz", scenario.replan_rate_hz},
-      {"sensor_rate_hz", scenario.sensor_rate_hz}};
+      {"sensor_rate_hz", scenario.sensor.rate_hz}};
   Json speeds = Json::object();
   for (const MovingObstacle& obstacle : scenario.moving_obstacles) {
     speeds[obstacle.name] =

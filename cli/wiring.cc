@@ -98,7 +98,7 @@ Problem LoadProblem(const std::string& name, const Overrides& overrides, const D
   CheckWord(scenario, "predictor", scenario.predictor, PredictorNames(),
             overrides.predictor ? "--predictor" : nullptr);
   CheckWord(scenario, "planner.name", scenario.planner, PlannerNames());
-  CheckWord(scenario, "sensor.name", scenario.sensor, SensorNames());
+  CheckWord(scenario, "sensor.name", scenario.sensor.name, SensorNames());
   CheckWord(scenario, "robot.model", scenario.robot, ModelNames(paths.models, "robot.yaml"));
   for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
     const std::string& appearance = scenario.moving_obstacles[i].appearance;

@@ -40,6 +40,22 @@ function(sidestep_module name)
     PATTERN "micro" EXCLUDE)
 endfunction()
 
+# sidestep_listed_sources(<variable> <list>)
+#
+# The source files that a list like planner/planners.def names, each once: the last thing in the
+# brackets of each line. So a file beside it is compiled by being listed.
+function(sidestep_listed_sources variable list)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${list})
+  file(STRINGS ${list} lines REGEX "^SIDESTEP_")
+  set(sources)
+  foreach(line IN LISTS lines)
+    string(REGEX MATCH "([A-Za-z0-9_/]+[.]cc)[)]$" matched "${line}")
+    list(APPEND sources ${CMAKE_MATCH_1})
+  endforeach()
+  list(REMOVE_DUPLICATES sources)
+  set(${variable} ${sources} PARENT_SCOPE)
+endfunction()
+
 # Everything that the thread sanitizer has to see: `./dev test --all` builds it in the tsan preset.
 add_custom_target(threaded_tests)
 

@@ -2,20 +2,13 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <vector>
 
 #include "core/pose.h"
 #include "core/shape.h"
 #include "core/time.h"
 
 namespace sidestep {
-
-/// Points on or in the solid world, as a sensor saw them at one moment: a camera's surface points,
-/// or the centres of filled cells.
-struct Scan {
-  EpisodeTime t;          ///< when it was captured, not when it arrived
-  Pose X_WC;              ///< where the sensor stood
-  Eigen::Matrix3Xd p_CP;  ///< [m] the points, in the sensor's frame
-};
 
 /// One named object, as a tag camera (or the simulator itself) reports it.
 struct ObjectObservation {
@@ -25,6 +18,22 @@ struct ObjectObservation {
   /// Of position (x, y, z in W) and rotation vector, m and rad; zero when exact.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   Shape shape;
+};
+
+/// What the points of a scan are.
+enum class ScanKind {
+  kSolid,    ///< throughout the solids, everywhere: a cell without a point is free
+  kSurface,  ///< where the sensor's rays end: what is behind a point, or on no ray, is not seen
+};
+
+/// The solid world as a sensor saw it at one moment, as points, named objects or both.
+struct Scan {
+  EpisodeTime t;  ///< when it was captured, not when it arrived
+  ScanKind kind = ScanKind::kSolid;
+  Pose X_WC;                               ///< where the sensor stood
+  Eigen::Matrix3Xd p_CP;                   ///< [m] the points, in the sensor's frame
+  Eigen::Matrix3Xd p_CFree;                ///< [m] kSurface only: ends of rays that met nothing
+  std::vector<ObjectObservation> objects;  ///< whose solids the points leave out
 };
 
 }  // namespace sidestep

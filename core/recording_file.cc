@@ -41,6 +41,7 @@ void CheckRecording(const Recording& recording) {
   Require(recording.v_max.size() == n, "v_max needs one number a joint");
   Require(Increase(Times(recording.control)), "the times of control must increase");
   Require(Increase(Times(recording.truth)), "the times of truth must increase");
+  Require(Increase(Times(recording.observations)), "the times of observations must increase");
   for (const ControlSample& sample : recording.control) {
     for (const Eigen::VectorXd* column : {&sample.q_command, &sample.v_command, &sample.a_command,
                                           &sample.q, &sample.v, &sample.torque}) {
@@ -281,6 +282,38 @@ void WriteEvents(Hdf5ImageWriter& file, const Recording& recording) {
              "m");
 }
 
+void WriteObservations(Hdf5ImageWriter& file, const Recording& recording) {
+  const std::vector<ObservationRecord>& observations = recording.observations;
+  Integers cells;
+  std::vector<SeenObject> objects;
+  for (const ObservationRecord& observation : observations) {
+    cells.values.insert(cells.values.end(), observation.changed_cells.begin(),
+                        observation.changed_cells.end());
+    objects.insert(objects.end(), observation.objects.begin(), observation.objects.end());
+  }
+  cells.shape = {cells.values.size()};
+  PoseArrays poses;
+  for (const SeenObject& object : objects) poses.Append(object.X_WO);
+  file.MakeGroup("observations");
+  file.Write("observations/t", Column(observations, [](const auto& o) { return o.t.seconds(); }),
+             "s");
+  file.Write("observations/t_arrival",
+             Column(observations, [](const auto& o) { return o.t_arrival.seconds(); }), "s");
+  file.MakeGroup("observations/changed");
+  file.Write("observations/changed/offset",
+             Offsets(observations, [](const auto& o) { return o.changed_cells.size(); }));
+  file.Write("observations/changed/cell", cells);
+  file.MakeGroup("observations/objects");
+  file.Write("observations/objects/offset",
+             Offsets(observations, [](const auto& o) { return o.objects.size(); }));
+  file.Write("observations/objects/id", StringColumn(objects, [](const auto& o) { return o.id; }));
+  file.Write("observations/objects/position", {{objects.size(), 3}, poses.positions}, "m");
+  file.Write("observations/objects/quaternion", {{objects.size(), 4}, poses.quaternions});
+  file.Write("observations/objects/covariance",
+             VectorColumn(
+                 objects, 36, [](const auto& o) -> const auto& { return o.covariance; }));
+}
+
 // ---- reading
 
 Doubles ReadTimes(const Hdf5ImageReader& file, const std::string& path, hsize_t size) {
@@ -490,6 +523,38 @@ void ReadEvents(const Hdf5ImageReader& file, Recording* recording) {
   }
 }
 
+void ReadObservations(const Hdf5ImageReader& file, Recording* recording) {
+  const Doubles t = ReadIncreasingTimes(file, "observations/t");
+  const std::size_t num_rows = t.values.size();
+  const Doubles t_arrival = ReadTimes(file, "observations/t_arrival", num_rows);
+  const Integers cells = file.ReadIntegers("observations/changed/cell", {kAny});
+  const Integers cell_offset =
+      ReadOffsets(file, "observations/changed/offset", num_rows, cells.values.size());
+  const Strings ids = file.ReadStrings("observations/objects/id", {kAny});
+  const hsize_t num_objects = ids.values.size();
+  const Integers object_offset =
+      ReadOffsets(file, "observations/objects/offset", num_rows, num_objects);
+  const std::vector<Pose> poses = ReadPoses(file, "observations/objects/position",
+                                            "observations/objects/quaternion", {num_objects});
+  const Doubles covariance = file.ReadDoubles("observations/objects/covariance", {num_objects, 36});
+  const auto at = [](const Integers& offsets, std::size_t row) {
+    return static_cast<std::size_t>(offsets.values[row]);
+  };
+  for (std::size_t i = 0; i < num_rows; ++i) {
+    ObservationRecord& observation = recording->observations.emplace_back();
+    observation.t = EpisodeTime(t.values[i]);
+    observation.t_arrival = EpisodeTime(t_arrival.values[i]);
+    observation.changed_cells.assign(cells.values.begin() + cell_offset.values[i],
+                                     cells.values.begin() + cell_offset.values[i + 1]);
+    for (std::size_t k = at(object_offset, i); k < at(object_offset, i + 1); ++k) {
+      SeenObject& object = observation.objects.emplace_back();
+      object.id = ids.values[k];
+      object.X_WO = poses[k];
+      object.covariance = VectorAt(covariance, k).reshaped(6, 6);
+    }
+  }
+}
+
 std::vector<unsigned char> ToHdf5(const Recording& recording) {
   Hdf5ImageWriter file;
   file.SetAttribute("format", kFormat.name);
@@ -500,6 +565,7 @@ std::vector<unsigned char> ToHdf5(const Recording& recording) {
   WriteTruth(file, recording);
   WriteCycles(file, recording);
   WriteEvents(file, recording);
+  WriteObservations(file, recording);
   return file.Finish();
 }
 
@@ -522,6 +588,7 @@ Recording ReadRecording(const std::string& path) {
   ReadTruth(file, &recording);
   ReadCycles(file, &recording);
   ReadEvents(file, &recording);
+  ReadObservations(file, &recording);
   return recording;
 }
 

@@ -71,11 +71,16 @@ class TemporaryFile {
 
 }  // namespace
 
+std::string SealedBytes(const SealedFormat& format, std::span<const unsigned char> payload) {
+  std::string bytes = MakeHead(format, payload);
+  bytes.append(payload.begin(), payload.end());
+  return bytes;
+}
+
 void WriteSealedFile(const std::string& path, const SealedFormat& format,
                      std::span<const unsigned char> payload) {
   TemporaryFile temporary(path + "." + std::to_string(getpid()) + ".part");
-  std::string bytes = MakeHead(format, payload);
-  bytes.append(payload.begin(), payload.end());
+  const std::string bytes = SealedBytes(format, payload);
   std::FILE* const file = std::fopen(temporary.path().c_str(), "wb");
   if (file == nullptr) FailToWrite(path);
   const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size() &&

@@ -42,4 +42,9 @@ PlanResult GaussNewtonPlanner::DoPlan(const PlanRequest& request) const {
   return result;
 }
 
+std::unique_ptr<Planner> MakeGaussNewtonPlanner(const RobotModel& robot,
+                                                const PlannerSettings& settings) {
+  return std::make_unique<GaussNewtonPlanner>(robot, settings);
+}
+
 }  // namespace sidestep

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "planner/planner.h"
 #include "planner/planner_settings.h"
 
@@ -20,5 +22,8 @@ class GaussNewtonPlanner final : public Planner {
 
   PlannerSettings settings_;
 };
+
+std::unique_ptr<Planner> MakeGaussNewtonPlanner(const RobotModel& robot,
+                                                const PlannerSettings& settings);
 
 }  // namespace sidestep

@@ -111,4 +111,8 @@ PlanResult GpPlanner::DoPlan(const PlanRequest& request) const {
   return best;
 }
 
+std::unique_ptr<Planner> MakeGpPlanner(const RobotModel& robot, const PlannerSettings& settings) {
+  return std::make_unique<GpPlanner>(robot, settings);
+}
+
 }  // namespace sidestep

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "planner/planner.h"
 #include "planner/planner_settings.h"
 
@@ -30,5 +32,7 @@ class GpPlanner final : public Planner {
 
   PlannerSettings settings_;
 };
+
+std::unique_ptr<Planner> MakeGpPlanner(const RobotModel& robot, const PlannerSettings& settings);
 
 }  // namespace sidestep

@@ -2,34 +2,25 @@
 
 #include <ceres/version.h>
 
-#include <array>
 #include <stdexcept>
 
-#include "planner/gauss_newton_planner.h"
-#include "planner/gp_planner.h"
-#include "planner/straight_line_planner.h"
-
 namespace sidestep {
+
+#define SIDESTEP_PLANNER(name, make, file) \
+  std::unique_ptr<Planner> make(const RobotModel&, const PlannerSettings&);
+#include "planner/planners.def"
+#undef SIDESTEP_PLANNER
+
 namespace {
 
 struct Entry {
   const char* name;
   std::unique_ptr<Planner> (*make)(const RobotModel& robot, const PlannerSettings& settings);
 };
-
-constexpr std::array kPlanners = {
-    Entry{"gauss_newton",
-          [](const RobotModel& robot, const PlannerSettings& settings) -> std::unique_ptr<Planner> {
-            return std::make_unique<GaussNewtonPlanner>(robot, settings);
-          }},
-    Entry{"gpmp",
-          [](const RobotModel& robot, const PlannerSettings& settings) -> std::unique_ptr<Planner> {
-            return std::make_unique<GpPlanner>(robot, settings);
-          }},
-    Entry{"straight_line",
-          [](const RobotModel& robot, const PlannerSettings&) -> std::unique_ptr<Planner> {
-            return std::make_unique<StraightLinePlanner>(robot);
-          }},
+constexpr Entry kPlanners[] = {
+#define SIDESTEP_PLANNER(name, make, file) {name, &make},
+#include "planner/planners.def"
+#undef SIDESTEP_PLANNER
 };
 
 }  // namespace

@@ -8,4 +8,8 @@ PlanResult StraightLinePlanner::DoPlan(const PlanRequest& request) const {
   return MakeResult(request, MakeDirectMotion(request, Timing::kWholeTime), /*converged=*/true);
 }
 
+std::unique_ptr<Planner> MakeStraightLinePlanner(const RobotModel& robot, const PlannerSettings&) {
+  return std::make_unique<StraightLinePlanner>(robot);
+}
+
 }  // namespace sidestep

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <memory>
+
 #include "planner/planner.h"
+#include "planner/planner_settings.h"
 
 namespace sidestep {
 
@@ -13,5 +16,8 @@ class StraightLinePlanner final : public Planner {
  private:
   PlanResult DoPlan(const PlanRequest& request) const override;
 };
+
+std::unique_ptr<Planner> MakeStraightLinePlanner(const RobotModel& robot,
+                                                 const PlannerSettings& settings);
 
 }  // namespace sidestep

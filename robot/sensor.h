@@ -6,15 +6,17 @@
 
 namespace sidestep {
 
-/// Something that sees the world as points, at its own rate.
+/// Something that sees the world, at its own rate.
 class Sensor {
  public:
   virtual ~Sensor() = default;
 
-  /// When the next scan will be captured; the loop advances the robot to that time and then reads.
-  virtual EpisodeTime NextCapture() const = 0;
+  /// When it has to be read next, because then it captures or a scan arrives: the loop advances the
+  /// robot to that time and calls Read. A time that has passed means: at once.
+  virtual EpisodeTime NextDue() const = 0;
 
-  /// The newest scan that has not been read before, if there is one. It never holds the robot.
+  /// The next scan that has arrived and has not been read before, if there is one; its time is that
+  /// of its capture. Scans come in the order of capture. They never hold the robot.
   virtual std::optional<Scan> Read() = 0;
 };
 

@@ -11,6 +11,7 @@
 #include "core/pose.h"
 #include "core/shape.h"
 #include "core/time.h"
+#include "scenarios/sensor_settings.h"
 
 namespace sidestep {
 
@@ -120,8 +121,7 @@ struct Scenario {
   double replan_rate_hz = 0;
   double latency_s = 0;  ///< charged to each planning cycle
 
-  std::string sensor;
-  double sensor_rate_hz = 0;
+  SensorSettings sensor;
   std::uint64_t seed = 1;
 
   std::map<std::string, std::string> choices;  ///< what was chosen, by the choice's name

@@ -305,11 +305,8 @@ void ReadLoop(const YamlReader& top, Scenario& scenario) {
     replanning.Fail("latency_s", "must not exceed the horizon");
   }
   replanning.CheckNoUnknownKeys();
-  const YamlReader sensor = top.GetMap("sensor");
-  scenario.sensor = sensor.GetString("name");
-  scenario.lines["sensor.name"] = sensor.Line("name");
-  scenario.sensor_rate_hz = ReadRate(sensor, "rate_hz");
-  sensor.CheckNoUnknownKeys();
+  scenario.sensor = ReadSensorSettings(top.GetMap("sensor"));
+  scenario.lines["sensor.name"] = scenario.sensor.line;
   const int seed = top.GetInt("seed");
   if (seed < 0) top.Fail("seed", "must be >= 0, is " + std::to_string(seed));
   scenario.seed = static_cast<std::uint64_t>(seed);

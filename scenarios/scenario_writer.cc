@@ -1,33 +1,10 @@
-#include <charconv>
 #include <cmath>
 
 #include "scenarios/scenario.h"
+#include "scenarios/yaml_text.h"
 
 namespace sidestep {
 namespace {
-
-// The shortest text that reads back to the same double.
-std::string Number(double value) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value);
-  return std::string(text, end.ptr);
-}
-
-std::string List(const Eigen::VectorXd& values) {
-  std::string text;
-  for (const double value : values) text += (text.empty() ? "" : ", ") + Number(value);
-  return "[" + text + "]";
-}
-
-// Any text as a double-quoted YAML scalar.
-std::string Quoted(const std::string& text) {
-  std::string quoted;
-  for (const char c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c == '\n' ? std::string("\\n") : std::string(1, c);
-  }
-  return "\"" + quoted + "\"";
-}
 
 Eigen::Vector3d RollPitchYaw(const Pose& pose) {
   const Eigen::Matrix3d R = pose.rotation().toRotationMatrix();
@@ -168,8 +145,7 @@ std::string ToYaml(const Scenario& scenario) {
   line("predictor: " + Quoted(scenario.predictor));
   line("replanning: {rate_hz: " + Number(scenario.replan_rate_hz) +
        ", latency_s: " + Number(scenario.latency_s) + "}");
-  line("sensor: {name: " + Quoted(scenario.sensor) +
-       ", rate_hz: " + Number(scenario.sensor_rate_hz) + "}");
+  text += ToYaml(scenario.sensor);
   line("seed: " + std::to_string(scenario.seed));
   return text;
 }

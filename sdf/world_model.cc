@@ -10,10 +10,10 @@
 #include "sdf/composite_field.h"
 #include "sdf/grid_field.h"
 #include "sdf/map/object_field.h"
-#include "sdf/map/occupancy_from_scan.h"
 #include "sdf/map/static_map.h"
 #include "sdf/prediction/registry.h"
 #include "sdf/stopwatch.h"
+#include "sdf/tracking/named_objects.h"
 #include "sdf/tracking/object_tracker.h"
 
 namespace sidestep {
@@ -23,18 +23,23 @@ namespace {
 class MappedWorld : public WorldModel {
  public:
   explicit MappedWorld(const WorldModelOptions& options)
-      : options_(options), static_map_(options.convention) {}
+      : options_(options),
+        scan_map_(options.grid, options.unseen),
+        static_map_(options.convention) {}
 
   void Observe(const Scan& scan) final {
     if (t_scan_ && scan.t <= *t_scan_) {
       throw std::invalid_argument("WorldModel: scans must come in the order of capture");
     }
     Stopwatch stopwatch;
-    const OccupancyGrid occupancy = FillFromScan(scan, options_.grid);
+    occupancy_ = scan_map_.Update(scan);
+    LearnObjects(scan, &occupancy_);
     times_.map_s += stopwatch.Lap();
-    Learn(occupancy, scan.t);
+    Learn(occupancy_, scan.t);
     t_scan_ = scan.t;
   }
+
+  const OccupancyGrid& Occupancy() const final { return occupancy_; }
 
   std::shared_ptr<const DistanceField> MakeField() final {
     if (!t_scan_) throw std::invalid_argument("WorldModel: no scan yet");
@@ -53,6 +58,11 @@ class MappedWorld : public WorldModel {
   WorldModelTimes TakeTimes() final { return std::exchange(times_, {}); }
 
  protected:
+  // Takes in the named objects of a scan. To one who does not look ahead they are solids like
+  // others.
+  virtual void LearnObjects(const Scan& scan, OccupancyGrid* occupancy) {
+    FillObjects(scan.objects, occupancy);
+  }
   // Takes in what is filled at time t.
   virtual void Learn(const OccupancyGrid& occupancy, EpisodeTime t) = 0;
   virtual std::shared_ptr<const DistanceField> Compose(std::shared_ptr<const SdfGrid> static_W) {
@@ -60,6 +70,8 @@ class MappedWorld : public WorldModel {
   }
 
   const WorldModelOptions options_;
+  ScanMap scan_map_;
+  OccupancyGrid occupancy_;  // by the latest scan
   StaticMap static_map_;
   std::optional<EpisodeTime> t_scan_;  // of the latest scan
   WorldModelTimes times_;
@@ -92,7 +104,8 @@ class PredictedWorld final : public MappedWorld {
       : MappedWorld(options),
         predictor_(MakePredictor(options.predictor)),
         tracker_(options.grid, {.max_distance_m = options.max_distance_m + GrowthLimit(options),
-                                .convention = options.convention}) {}
+                                .convention = options.convention}),
+        named_objects_(options.grid.cell_m, options.max_distance_m + GrowthLimit(options)) {}
 
   std::vector<PredictedObject> DescribeObjects(
       const std::vector<EpisodeTime>& times) const override {
@@ -120,6 +133,10 @@ class PredictedWorld final : public MappedWorld {
     return options.growth_sigmas > 0 ? options.growth_limit_m : 0;
   }
 
+  void LearnObjects(const Scan& scan, OccupancyGrid*) override {
+    named_objects_.Update(scan.objects, scan.t);
+  }
+
   void Learn(const OccupancyGrid& occupancy, EpisodeTime t) override {
     const TrackerTimes times = tracker_.Update(occupancy, t);
     times_.segment_s += times.segment_s;
@@ -131,10 +148,19 @@ class PredictedWorld final : public MappedWorld {
 
   std::shared_ptr<const DistanceField> Compose(std::shared_ptr<const SdfGrid> static_W) override {
     believed_.clear();
-    std::vector<MovingField> moving;
+    for (const auto& [object, R_WO] : named_objects_.Objects()) {
+      PredictedMotion motion = predictor_->Predict(*object);
+      const Pose turn(R_WO, Eigen::Vector3d::Zero());
+      motion.X_WO = [X_WO = motion.X_WO, turn](EpisodeTime t) { return X_WO(t) * turn; };
+      believed_.push_back({object, std::move(motion)});
+    }
     for (const auto& object : tracker_.MovingObjects()) {
-      const Belief& belief = believed_.emplace_back(Belief{object, predictor_->Predict(*object)});
-      MovingField& field = moving.emplace_back(MovingField{object->field_O, belief.motion.X_WO});
+      believed_.push_back({object, predictor_->Predict(*object)});
+    }
+    std::vector<MovingField> moving;
+    for (const Belief& belief : believed_) {
+      MovingField& field =
+          moving.emplace_back(MovingField{belief.object->field_O, belief.motion.X_WO});
       if (options_.growth_sigmas > 0) {
         field.max_growth_m = options_.growth_limit_m;
         field.growth_m = [sigmas = options_.growth_sigmas,
@@ -151,6 +177,7 @@ class PredictedWorld final : public MappedWorld {
 
   std::unique_ptr<const ObstaclePredictor> predictor_;
   ObjectTracker tracker_;
+  NamedObjects named_objects_;
   std::vector<Belief> believed_;  // in the latest field
 };
 
@@ -173,6 +200,8 @@ class KnownWorld final : public MappedWorld {
   }
 
  private:
+  void LearnObjects(const Scan&, OccupancyGrid*) override {}  // the truth is known
+
   struct ShapeField {
     Eigen::Vector3d half_extents_m;
     std::shared_ptr<const SdfGrid> field_O;

@@ -11,6 +11,7 @@
 #include "core/time.h"
 #include "sdf/distance_field.h"
 #include "sdf/map/distance_transform.h"
+#include "sdf/map/scan_map.h"
 
 namespace sidestep {
 
@@ -34,6 +35,7 @@ using TrueObstacles = std::function<std::vector<ObjectObservation>(EpisodeTime)>
 struct WorldModelOptions {
   Knowledge knowledge = Knowledge::kPrediction;
   std::string predictor = "kalman_cv";  ///< a name of sdf/prediction/registry.h
+  UnseenSpace unseen = UnseenSpace::kRemembered;  ///< of scans of surfaces
   /// Under prediction, moving things are taken to be thicker by so many standard deviations of
   /// where they are predicted to be, in the worst direction, but by no more than the limit [m].
   double growth_sigmas = 0, growth_limit_m = 0.1;
@@ -56,6 +58,9 @@ class WorldModel {
 
   /// Takes in a scan, in the order of capture.
   virtual void Observe(const Scan& scan) = 0;
+
+  /// What the latest scan said is filled, in the grid of the options.
+  virtual const OccupancyGrid& Occupancy() const = 0;
 
   /// The belief after the latest scan, as an immutable snapshot. Needs at least one scan.
   virtual std::shared_ptr<const DistanceField> MakeField() = 0;

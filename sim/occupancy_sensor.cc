@@ -1,16 +1,11 @@
 #include "sim/occupancy_sensor.h"
 
-#include <stdexcept>
+#include <utility>
+
+#include "sim/noisy_occupancy.h"
 
 namespace sidestep {
 namespace {
-
-Eigen::Vector3d CenterOf(const GridSpec& spec, std::size_t cell) {
-  const auto nx = static_cast<std::size_t>(spec.size[0]);
-  const auto ny = static_cast<std::size_t>(spec.size[1]);
-  return spec.Center(static_cast<int>(cell % nx), static_cast<int>(cell / nx % ny),
-                     static_cast<int>(cell / nx / ny));
-}
 
 OccupancyGrid CheckedGrid(const GridSpec& spec) {
   CheckGridSpec(spec);
@@ -21,11 +16,10 @@ OccupancyGrid CheckedGrid(const GridSpec& spec) {
 
 OccupancySensor::OccupancySensor(const World& world, const GridSpec& spec, double rate_hz)
     : world_(world),
-      rate_hz_(rate_hz),
+      clock_(rate_hz),
       rasteriser_(world.model()),
       geoms_(FindWorldGeoms(world.model())),
       fixed_(CheckedGrid(spec)) {
-  if (!(rate_hz > 0)) throw std::invalid_argument("OccupancySensor: the rate must be > 0");
   std::vector<std::size_t> cells;
   for (const int geom : geoms_.fixed) {
     const std::vector<std::size_t> filled = rasteriser_.Fill(world.data(), geom, &fixed_);
@@ -33,19 +27,12 @@ OccupancySensor::OccupancySensor(const World& world, const GridSpec& spec, doubl
   }
   fixed_points_.resize(3, static_cast<Eigen::Index>(cells.size()));
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    fixed_points_.col(static_cast<Eigen::Index>(i)) = CenterOf(spec, cells[i]);
+    fixed_points_.col(static_cast<Eigen::Index>(i)) = spec.CenterOf(cells[i]);
   }
 }
 
-std::int64_t OccupancySensor::TickOfCapture(std::int64_t k) const {
-  return World::TickNotBefore(EpisodeTime(static_cast<double>(k) / rate_hz_));
-}
-
-EpisodeTime OccupancySensor::NextCapture() const { return World::TimeOf(TickOfCapture(next_)); }
-
 std::optional<Scan> OccupancySensor::Read() {
-  if (world_.ticks() < TickOfCapture(next_)) return std::nullopt;
-  while (TickOfCapture(next_) <= world_.ticks()) ++next_;
+  if (!clock_.Take(world_.ticks())) return std::nullopt;
 
   std::vector<std::size_t> cells;
   for (const int geom : geoms_.moving) {
@@ -60,9 +47,18 @@ std::optional<Scan> OccupancySensor::Read() {
   scan.p_CP.leftCols(fixed_points_.cols()) = fixed_points_;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     scan.p_CP.col(fixed_points_.cols() + static_cast<Eigen::Index>(i)) =
-        CenterOf(fixed_.spec, cells[i]);
+        fixed_.spec.CenterOf(cells[i]);
   }
   return scan;
+}
+
+std::unique_ptr<Sensor> MakeOccupancySensor(const Scenario& scenario, const World& world) {
+  const SensorSettings& settings = scenario.sensor;
+  std::unique_ptr<Sensor> sensor =
+      std::make_unique<OccupancySensor>(world, scenario.grid, settings.rate_hz);
+  if (!settings.noise) return sensor;
+  return std::make_unique<NoisyOccupancy>(std::move(sensor), scenario.grid, *settings.noise,
+                                          scenario.seed);
 }
 
 }  // namespace sidestep

@@ -1,40 +1,76 @@
 #include "sim/sensors.h"
 
-#include <array>
+#include <algorithm>
+#include <string_view>
 
 #include "core/input_error.h"
-#include "sim/occupancy_sensor.h"
+#include "sim/delayed_sensor.h"
 
 namespace sidestep {
+
+#define SIDESTEP_SENSOR(name, settings, make, file) \
+  std::unique_ptr<Sensor> make(const Scenario&, const World&);
+#include "sim/sensors.def"
+#undef SIDESTEP_SENSOR
+
 namespace {
 
-std::unique_ptr<Sensor> MakeOccupancySensor(const Scenario& scenario, const World& world) {
-  return std::make_unique<OccupancySensor>(world, scenario.grid, scenario.sensor_rate_hz);
-}
-
 struct Entry {
-  const char* name;
+  std::string_view name;
+  std::string_view settings;  // as sensors.def says
   std::unique_ptr<Sensor> (*make)(const Scenario&, const World&);
 };
-constexpr std::array kSensors = {Entry{"occupancy", &MakeOccupancySensor}};
+constexpr Entry kSensors[] = {
+#define SIDESTEP_SENSOR(name, settings, make, file) {name, settings, &make},
+#include "sim/sensors.def"
+#undef SIDESTEP_SENSOR
+};
+
+[[noreturn]] void Fail(const Scenario& scenario, const std::string& key, const std::string& why) {
+  throw InputError(scenario.file, scenario.sensor.line, "sensor." + key, why);
+}
+
+// The scenario must hold the settings that the sensor needs, and none of another's.
+void CheckSettings(const Scenario& scenario, const Entry& entry) {
+  const SensorSettings& sensor = scenario.sensor;
+  const std::string of = "the sensor '" + sensor.name + "'";
+  const struct {
+    std::string key;
+    bool given;
+  } maps[] = {{"noise", sensor.noise.has_value()},
+              {"camera", sensor.camera.has_value()},
+              {"tags", sensor.tags.has_value()}};
+  for (const auto& [key, given] : maps) {
+    if (given && entry.settings != key && entry.settings != key + "?") {
+      Fail(scenario, key, "is not for " + of);
+    }
+    if (!given && entry.settings == key) Fail(scenario, key, "is missing; " + of + " needs it");
+  }
+}
 
 }  // namespace
 
 std::vector<std::string> SensorNames() {
   std::vector<std::string> names;
   for (const Entry& entry : kSensors) names.emplace_back(entry.name);
+  std::sort(names.begin(), names.end());
   return names;
 }
 
 std::unique_ptr<Sensor> MakeSensor(const Scenario& scenario, const World& world) {
-  std::string known;
+  const SensorSettings& settings = scenario.sensor;
   for (const Entry& entry : kSensors) {
-    if (scenario.sensor == entry.name) return entry.make(scenario, world);
-    known += (known.empty() ? "" : ", ") + std::string(entry.name);
+    if (settings.name != entry.name) continue;
+    CheckSettings(scenario, entry);
+    std::unique_ptr<Sensor> sensor = entry.make(scenario, world);
+    const bool is_prompt =
+        settings.latency_s == 0 && settings.jitter_s == 0 && settings.dropout == 0;
+    if (is_prompt) return sensor;
+    return std::make_unique<DelayedSensor>(std::move(sensor), settings, world, scenario.seed);
   }
-  const auto line = scenario.lines.find("sensor.name");
-  throw InputError(scenario.file, line == scenario.lines.end() ? 0 : line->second, "sensor.name",
-                   "is not a known sensor (known: " + known + "): '" + scenario.sensor + "'");
+  std::string known;
+  for (const std::string& name : SensorNames()) known += (known.empty() ? "" : ", ") + name;
+  Fail(scenario, "name", "is not a known sensor (known: " + known + "): '" + settings.name + "'");
 }
 
 }  // namespace sidestep

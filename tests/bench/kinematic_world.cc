@@ -118,13 +118,13 @@ class CellSensor final : public Sensor {
   CellSensor(const KinematicWorld& world, const Scenario& scenario)
       : world_(world), scenario_(scenario), shapes_(scenario) {}
 
-  EpisodeTime NextCapture() const override {
-    return EpisodeTime(world_.sees ? num_scans_ / scenario_.sensor_rate_hz
+  EpisodeTime NextDue() const override {
+    return EpisodeTime(world_.sees ? num_scans_ / scenario_.sensor.rate_hz
                                    : std::numeric_limits<double>::infinity());
   }
 
   std::optional<Scan> Read() override {
-    const EpisodeTime t = NextCapture();
+    const EpisodeTime t = NextDue();
     ++num_scans_;
     const std::vector<Solid> solids = shapes_.SolidsAt(t);
     std::vector<Eigen::Vector3d> points;
@@ -137,7 +137,9 @@ class CellSensor final : public Sensor {
         }
       }
     }
-    Scan scan{t, Pose(), Eigen::Matrix3Xd(3, points.size())};
+    Scan scan;
+    scan.t = t;
+    scan.p_CP.resize(3, static_cast<Eigen::Index>(points.size()));
     for (std::size_t i = 0; i < points.size(); ++i) {
       scan.p_CP.col(static_cast<Eigen::Index>(i)) = points[i];
     }

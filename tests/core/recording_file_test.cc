@@ -135,6 +135,20 @@ Recording FullRecording() {
   }
   recording.events = {{EpisodeTime(0.1), "appeared", 1, 0, {0.4, 2, 0.6}},
                       {EpisodeTime(0.3), "merged", 2, 1, {0.5, 1, 0.7}}};
+  for (int i = 0; i < 3; ++i) {
+    ObservationRecord observation;
+    observation.t = EpisodeTime(0.1 * i);
+    observation.t_arrival = EpisodeTime(0.1 * i + 0.05);
+    for (int k = 0; k < 2 * i; ++k) observation.changed_cells.push_back(100 * i + k);
+    for (int k = 0; k < 2 - i; ++k) {
+      SeenObject object;
+      object.id = k == 0 ? "trolley" : "ball";
+      object.X_WO = TurnedPose(0.2 * k, i + k);
+      object.covariance.setConstant(0.1 * i + k);
+      observation.objects.push_back(object);
+    }
+    recording.observations.push_back(observation);
+  }
   recording.metrics = {{"min_clearance_m", -0.04},
                        {"time_to_goal_s", std::numeric_limits<double>::quiet_NaN()}};
   return recording;
@@ -176,6 +190,18 @@ void ExpectEqual(const PredictedObject& a, const PredictedObject& b) {
   EXPECT_EQ(a.t, b.t);
   ASSERT_EQ(a.X_WO.size(), b.X_WO.size());
   for (std::size_t i = 0; i < a.X_WO.size(); ++i) ExpectEqual(a.X_WO[i], b.X_WO[i]);
+}
+
+void ExpectEqual(const ObservationRecord& a, const ObservationRecord& b) {
+  EXPECT_EQ(a.t, b.t);
+  EXPECT_EQ(a.t_arrival, b.t_arrival);
+  EXPECT_EQ(a.changed_cells, b.changed_cells);
+  ASSERT_EQ(a.objects.size(), b.objects.size());
+  for (std::size_t i = 0; i < a.objects.size(); ++i) {
+    EXPECT_EQ(a.objects[i].id, b.objects[i].id);
+    ExpectEqual(a.objects[i].X_WO, b.objects[i].X_WO);
+    EXPECT_EQ(a.objects[i].covariance, b.objects[i].covariance);
+  }
 }
 
 void ExpectEqual(const CycleRecord& a, const CycleRecord& b) {
@@ -221,6 +247,7 @@ void ExpectEqual(const Recording& a, const Recording& b) {
   ExpectEqual(a.truth, b.truth);
   ExpectEqual(a.cycles, b.cycles);
   ExpectEqual(a.events, b.events);
+  ExpectEqual(a.observations, b.observations);
   ASSERT_EQ(a.metrics.size(), b.metrics.size());
   for (const auto& [name, value] : a.metrics) ExpectEqual(value, b.metrics.at(name));
 }
@@ -341,17 +368,39 @@ TEST_F(RecordingFile, IsRefusedWhereverItIsCut) {
             Path("cut.h5") + ": is damaged: its contents do not match its checksum");
 }
 
-TEST_F(RecordingFile, IsRefusedWhicheverByteIsDamaged) {
+// The shortest recording there is.
+Recording SmallRecording() {
   Recording small;
   small.joints = {"hinge"};
   small.q_start = small.q_goal = small.v_max = Eigen::VectorXd::Ones(1);
-  WriteRecording(small, Path("whole.h5"));
-  const std::string whole = ReadBytes(Path("whole.h5"));
-  for (std::size_t i = 0; i < whole.size(); i += i < kHeadBytes ? 1 : 13) {
-    std::string damaged = whole;
-    damaged[i] = static_cast<char>(damaged[i] ^ (1 << (i % 8)));
-    WriteBytes(Path("damaged.h5"), damaged);
-    EXPECT_THAT(Refusal(Path("damaged.h5")), StartsWith(Path("damaged.h5") + ": ")) << i;
+  return small;
+}
+
+TEST_F(RecordingFile, IsRefusedAtEveryLengthButItsOwn) {
+  const std::string path = Path("cut.h5");
+  WriteRecording(SmallRecording(), path);
+  for (std::uintmax_t size = std::filesystem::file_size(path); size-- > 0;) {
+    std::filesystem::resize_file(path, size);
+    const std::string refusal = Refusal(path);
+    ASSERT_TRUE(refusal.starts_with(path + (size == 0 ? ": is empty" : ": is ")) &&
+                refusal.find('\n') == std::string::npos)
+        << size << ": " << refusal;
+  }
+}
+
+TEST_F(RecordingFile, IsRefusedWhicheverByteIsDamaged) {
+  const std::string path = Path("damaged.h5");
+  WriteRecording(SmallRecording(), path);
+  const std::string whole = ReadBytes(path);
+  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+  const auto put = [&](std::size_t i, char byte) {
+    file.seekp(static_cast<std::streamoff>(i)).put(byte).flush();
+  };
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    put(i, static_cast<char>(whole[i] ^ (1 << (i % 8))));
+    const std::string refusal = Refusal(path);
+    ASSERT_TRUE(refusal.starts_with(path + ": ")) << i << ": " << refusal;
+    put(i, whole[i]);
   }
 }
 
@@ -427,6 +476,16 @@ INSTANTIATE_TEST_SUITE_P(
               {8},
               {0, 1.5, 1.5, 0, 0.75, 1.5, 2.25, 3},
               "plans: cycle 0: trajectory: times must increase strictly"},
+        Fault{"ArrivalMissing",
+              "observations/t_arrival",
+              {},
+              {},
+              "observations/t_arrival: is missing"},
+        Fault{"CovarianceOfAnotherShape",
+              "observations/objects/covariance",
+              {3, 6},
+              std::vector<double>(18, 0),
+              "observations/objects/covariance: has shape 3 x 6, expected shape 3 x 36"},
         Fault{"PoseZero",
               "predictions/poses/quaternion",
               {4, 4},

@@ -84,7 +84,17 @@ planner: {name: gpmp, epsilon_m: 0.1, sigma_obs: 0.2, n_int: 19, qc: 2, velocity
 knowledge: static
 predictor: stationary
 replanning: {rate_hz: 4, latency_s: 0.07}
-sensor: {name: occupancy, rate_hz: 15}
+sensor:
+  name: occupancy
+  rate_hz: 15
+  latency_s: 0.05
+  jitter_s: 0.01
+  dropout: 0.2
+  noise: {false_filled: 0.001, false_free: 0.02, position_noise_m: 0.003}
+  camera: {position_m: [1, 2, 3], look_at_m: [0.5, 0, 0], field_of_view_rad: 0.9, width: 32,
+           height: 24, range_m: 3.5, noise_per_m: 0.004, pixel_dropout: 0.1, unseen: filled}
+  tags: {position_m: [3, 2, 1], across_noise: 0.005, along_noise_per_m: 0.006,
+         rotation_noise_rad: 0.007, range_m: 2.5}
 seed: 42
 )";
   const Scenario scenario = ParseScenario(text, "odd.yaml");
@@ -102,6 +112,13 @@ seed: 42
   EXPECT_TRUE(again.acceleration_limits);
   EXPECT_EQ(again.latency_s, 0.07);
   EXPECT_EQ(again.seed, 42u);
+  EXPECT_EQ(ToYaml(again.sensor), ToYaml(scenario.sensor));
+  EXPECT_EQ(again.sensor.dropout, 0.2);
+  EXPECT_EQ(again.sensor.noise->position_noise_m, 0.003);
+  EXPECT_EQ(again.sensor.camera->look_at_m, Eigen::Vector3d(0.5, 0, 0));
+  EXPECT_EQ(again.sensor.camera->height, 24);
+  EXPECT_EQ(again.sensor.camera->unseen, "filled");
+  EXPECT_EQ(again.sensor.tags->rotation_noise_rad, 0.007);
   EXPECT_EQ(std::get<LinearMotion>(again.moving_obstacles[0].motion).stop_at_s, 2);
   EXPECT_EQ(std::get<Cylinder>(again.moving_obstacles[1].shape).length_m, 0.5);
   EXPECT_EQ(std::get<Ellipsoid>(again.moving_obstacles[2].shape).semi_axes_m,

@@ -33,7 +33,7 @@ TEST(OccupancySensor, SeesTheCentresOfTheCellsThatAreFilledAtItsTime) {
   const Scenario scenario = BusyScenario();
   Simulation simulation(scenario, TwoLink(scenario), kTestModels);
   for (int k = 0; k < 20; ++k) {
-    simulation.robot().AdvanceTo(simulation.sensor().NextCapture());
+    simulation.robot().AdvanceTo(simulation.sensor().NextDue());
     const std::optional<Scan> scan = simulation.sensor().Read();
     ASSERT_TRUE(scan.has_value());
     // The world as the scenario has it at the scan's time, rasterised from nothing.
@@ -53,7 +53,7 @@ TEST(OccupancySensor, CapturesAtItsRateOnTicksOfTheWorld) {
   const Scenario scenario = BusyScenario();
   Simulation simulation(scenario, TwoLink(scenario), kTestModels);
   for (int k = 0; k < 40; ++k) {
-    const EpisodeTime due = simulation.sensor().NextCapture();
+    const EpisodeTime due = simulation.sensor().NextDue();
     EXPECT_GE(due.seconds(), k / 30.0 - 1e-9);
     EXPECT_LT(due.seconds(), k / 30.0 + 1e-3);
     if (k > 0) {
@@ -73,7 +73,7 @@ TEST(OccupancySensor, SkipsCapturesThatWereMissed) {
   simulation.robot().AdvanceTo(EpisodeTime(0.25));
   EXPECT_EQ(simulation.sensor().Read()->t, EpisodeTime(0.25));
   EXPECT_FALSE(simulation.sensor().Read().has_value());
-  EXPECT_EQ(simulation.sensor().NextCapture(), EpisodeTime(0.267));  // 8 / 30 s
+  EXPECT_EQ(simulation.sensor().NextDue(), EpisodeTime(0.267));  // 8 / 30 s
 }
 
 }  // namespace

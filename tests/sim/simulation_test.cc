@@ -248,11 +248,11 @@ TEST(Simulation, SaysWhatOfTheScenarioDoesNotFit) {
               testing::ThrowsMessage<InputError>(testing::StrEq(
                   "two_link.yaml:9: task.start: two_link has no configuration 'asleep'")));
   scenario.start_name = "level";
-  scenario.sensor = "nose";
-  scenario.lines["sensor.name"] = 12;
+  scenario.sensor.name = "nose";
+  scenario.sensor.line = 12;
   EXPECT_THAT([&] { Simulation(scenario, TwoLink(scenario), kTestModels); },
               testing::ThrowsMessage<InputError>(testing::StrEq(
-                  "two_link.yaml:12: sensor.name: is not a known sensor (known: occupancy): "
+                  "two_link.yaml:12: sensor.name: is not a known sensor (known: depth_camera, occupancy, tags): "
                   "'nose'")));
 }
 

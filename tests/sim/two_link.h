@@ -19,8 +19,8 @@ inline Scenario TwoLinkScenario() {
   scenario.robot = "two_link";
   scenario.q_start = Eigen::Vector2d(0, 0);
   scenario.grid = {{-1, -1, -1}, 0.04, {50, 50, 50}};
-  scenario.sensor = "occupancy";
-  scenario.sensor_rate_hz = 30;
+  scenario.sensor.name = "occupancy";
+  scenario.sensor.rate_hz = 30;
   return scenario;
 }
 

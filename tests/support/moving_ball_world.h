@@ -22,6 +22,7 @@ class MovingBallWorld final : public WorldModel {
   }
 
   void Observe(const Scan&) override {}
+  const OccupancyGrid& Occupancy() const override { return nothing_; }
   std::shared_ptr<const DistanceField> MakeField() override { return field_; }
   std::vector<PredictedObject> DescribeObjects(
       const std::vector<EpisodeTime>& times) const override {
@@ -36,6 +37,7 @@ class MovingBallWorld final : public WorldModel {
  private:
   std::shared_ptr<const BallField> field_;
   double radius_m_;
+  OccupancyGrid nothing_;
 };
 
 }  // namespace sidestep

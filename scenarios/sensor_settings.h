@@ -1,0 +1,65 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace sidestep {
+
+/// What an occupancy sensor gets wrong.
+struct OccupancyNoise {
+  double false_filled = 0;      ///< probability that a free cell is reported filled, each scan
+  double false_free = 0;        ///< probability that a filled cell is not reported, each scan
+  double position_noise_m = 0;  ///< standard deviation of each point along each axis
+};
+
+/// A camera that measures depth. It looks along the line from where it stands to a point; its image
+/// is upright.
+struct CameraSettings {
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();  ///< in W
+  Eigen::Vector3d look_at_m = Eigen::Vector3d::Zero();
+  double field_of_view_rad = 1.2;  ///< horizontal
+  int width = 160, height = 120;   ///< pixels
+  double range_m = 5;              ///< farther things are not measured
+  double noise_per_m = 0;          ///< depth z has the standard deviation noise_per_m z^2 (stereo)
+  double pixel_dropout = 0;        ///< probability that a pixel has no depth
+  std::string unseen = "remembered";  ///< a word of sdf/map/scan_map.h
+};
+
+/// A camera that finds tags on the moving things and says where they are. At distance d the error
+/// of a position has these standard deviations, across and along the line of sight; their growth
+/// with d and d^2 is that of any pinhole camera with corners found to a fixed part of a pixel.
+struct TagSettings {
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();  ///< of the camera, in W
+  double across_noise = 0.001;                           ///< times d
+  double along_noise_per_m = 0.002;                      ///< times d^2
+  double rotation_noise_rad = 0;                         ///< about each axis
+  double range_m = 5;                                    ///< farther things are not found
+};
+
+/// A sensor as the scenario describes it.
+struct SensorSettings {
+  std::string name = "occupancy";
+  double rate_hz = 0;
+  // How what it captures arrives, whatever the sensor.
+  double latency_s = 0;  ///< from capture to arrival, at least
+  double jitter_s = 0;   ///< further delay, uniform in [0, jitter_s)
+  double dropout = 0;    ///< probability that a scan never arrives
+  // What only some sensors have.
+  std::optional<OccupancyNoise> noise;
+  std::optional<CameraSettings> camera;
+  std::optional<TagSettings> tags;
+
+  int line = 0;  ///< of `sensor` in the file, for whoever judges what fits the name
+};
+
+class YamlReader;
+
+/// Reads the map `sensor`. @throws InputError FILE:LINE: KEY: WHY.
+SensorSettings ReadSensorSettings(const YamlReader& sensor);
+
+/// The lines of YAML that ReadSensorSettings reads back to an equal value, with `sensor:` on top.
+std::string ToYaml(const SensorSettings& settings);
+
+}  // namespace sidestep

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <charconv>
+#include <string>
+
+namespace sidestep {
+
+/// The shortest text that reads back to the same double.
+inline std::string Number(double value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value);
+  return std::string(text, end.ptr);
+}
+
+/// [1, 2.5, 3]
+inline std::string List(const Eigen::VectorXd& values) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : ", ") + Number(value);
+  return "[" + text + "]";
+}
+
+/// Any text as a double-quoted YAML scalar.
+inline std::string Quoted(const std::string& text) {
+  std::string quoted;
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c == '\n' ? std::string("\\n") : std::string(1, c);
+  }
+  return "\"" + quoted + "\"";
+}
+
+}  // namespace sidestep

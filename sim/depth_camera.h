@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/random.h"
+#include "robot/sensor.h"
+#include "scenarios/scenario.h"
+#include "sim/capture_clock.h"
+#include "sim/ray_caster.h"
+#include "sim/world.h"
+
+namespace sidestep {
+
+/// A depth camera that stands still in the world: one ray through the middle of each pixel, met by
+/// the true solids. Its frame C is that of computer vision: x to the right of the image, y down,
+/// z forward.
+///
+/// A scan (of ScanKind::kSurface) holds a point for each pixel that sees a thing other than robot
+/// and floor, at its depth z with noise of standard deviation noise_per_m z^2, along the pixel's
+/// ray. Pixels that see the floor, or nothing within range_m of depth, say that their ray is free
+/// so far. Pixels that see the robot are left out, as by a filter that knows where the robot is; so
+/// are those that drop out.
+class DepthCamera final : public Sensor {
+ public:
+  /// @param world must outlive this.
+  DepthCamera(const World& world, const CameraSettings& settings, double rate_hz,
+              std::uint64_t seed);
+
+  EpisodeTime NextDue() const override { return clock_.Next(); }
+  std::optional<Scan> Read() override;
+
+ private:
+  const World& world_;
+  CameraSettings settings_;
+  CaptureClock clock_;
+  RayCaster caster_;
+  Pose X_WC_;
+  std::vector<Eigen::Vector3d> rays_C_;  ///< of each pixel, to depth 1 [m]
+  RandomStream depth_, dropout_;
+};
+
+/// As a scenario describes it, which must have settings of a camera.
+std::unique_ptr<Sensor> MakeDepthCamera(const Scenario& scenario, const World& world);
+
+}  // namespace sidestep

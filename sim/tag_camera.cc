@@ -1,0 +1,98 @@
+#include "sim/tag_camera.h"
+
+#include <Eigen/Geometry>
+
+#include "sim/rasteriser.h"
+
+namespace sidestep {
+namespace {
+
+Eigen::Matrix3Xd StaticCells(const World& world, const GridSpec& grid) {
+  CheckGridSpec(grid);
+  const Rasteriser rasteriser(world.model());
+  OccupancyGrid occupancy(grid);
+  for (const int geom : FindWorldGeoms(world.model()).fixed) {
+    rasteriser.Fill(world.data(), geom, &occupancy);
+  }
+  Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(occupancy.CountFilled()));
+  Eigen::Index n = 0;
+  for (std::size_t cell = 0; cell < occupancy.cells.size(); ++cell) {
+    if (occupancy.cells[cell] != 0) points.col(n++) = grid.CenterOf(cell);
+  }
+  return points;
+}
+
+// Standard deviations along three axes as a covariance in W: across the line of sight, and along.
+Eigen::Matrix3d SightCovariance(const Eigen::Vector3d& sight_W, const TagSettings& settings) {
+  const double d = sight_W.norm();
+  const Eigen::Vector3d u = sight_W / d;
+  const double across = settings.across_noise * d, along = settings.along_noise_per_m * d * d;
+  const Eigen::Matrix3d along_W = u * u.transpose();
+  return across * across * (Eigen::Matrix3d::Identity() - along_W) + along * along * along_W;
+}
+
+Eigen::Vector3d Normal3(RandomStream& random) {
+  const double x = random.Normal(), y = random.Normal(), z = random.Normal();
+  return {x, y, z};
+}
+
+}  // namespace
+
+TagCamera::TagCamera(const World& world, const GridSpec& grid, const TagSettings& settings,
+                     double rate_hz, std::uint64_t seed)
+    : world_(world),
+      settings_(settings),
+      clock_(rate_hz),
+      caster_(world.model()),
+      p_WStatic_(StaticCells(world, grid)),
+      random_(seed, "tags") {}
+
+bool TagCamera::Sees(const MovingObstacle& obstacle, const Pose& X_WO) const {
+  const Eigen::Vector3d sight_W = X_WO.translation() - settings_.position_m;
+  const double d = sight_W.norm();
+  if (!(d > 0) || d > settings_.range_m) return false;
+  const auto hit = caster_.Cast(world_.data(), settings_.position_m, sight_W / d);
+  return !hit || hit->distance_m >= d || GeomOwner(world_.model(), hit->geom) == obstacle.name;
+}
+
+ObjectObservation TagCamera::Measure(const MovingObstacle& obstacle, const Pose& X_WO) {
+  const Eigen::Vector3d sight_W = X_WO.translation() - settings_.position_m;
+  const double d = sight_W.norm();
+  const Eigen::Vector3d u = sight_W / d;
+  const Eigen::Vector3d noise = Normal3(random_);
+  const Eigen::Vector3d along = u * u.dot(noise);
+  const Eigen::Vector3d error_m =
+      settings_.across_noise * d * (noise - along) + settings_.along_noise_per_m * d * d * along;
+  const Eigen::Vector3d turn_rad = settings_.rotation_noise_rad * Normal3(random_);
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(turn_rad.norm(), turn_rad.stableNormalized()));
+
+  ObjectObservation observation;
+  observation.id = obstacle.name;
+  observation.t = world_.time();
+  observation.X_WO = Pose(X_WO.rotation() * turn, X_WO.translation() + error_m);
+  observation.covariance.topLeftCorner<3, 3>() =
+      SightCovariance(observation.X_WO.translation() - settings_.position_m, settings_);
+  observation.covariance.bottomRightCorner<3, 3>().diagonal().setConstant(
+      settings_.rotation_noise_rad * settings_.rotation_noise_rad);
+  observation.shape = obstacle.shape;
+  return observation;
+}
+
+std::optional<Scan> TagCamera::Read() {
+  if (!clock_.Take(world_.ticks())) return std::nullopt;
+  Scan scan;
+  scan.t = world_.time();
+  scan.p_CP = p_WStatic_;
+  for (const MovingObstacle& obstacle : world_.obstacles()) {
+    const Pose X_WO = PoseAt(obstacle, scan.t);
+    if (Sees(obstacle, X_WO)) scan.objects.push_back(Measure(obstacle, X_WO));
+  }
+  return scan;
+}
+
+std::unique_ptr<Sensor> MakeTagCamera(const Scenario& scenario, const World& world) {
+  return std::make_unique<TagCamera>(world, scenario.grid, scenario.sensor.tags.value(),
+                                     scenario.sensor.rate_hz, scenario.seed);
+}
+
+}  // namespace sidestep

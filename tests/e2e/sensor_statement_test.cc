@@ -1,0 +1,361 @@
+// Each sensor model against its own statement, measured back from a trace. Statistical bounds are
+// four standard errors wide; the seeds are fixed, so a result stays what it is.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "bench/episode.h"
+#include "core/input_error.h"
+#include "sim/sensors.h"
+#include "sim/simulation.h"
+#include "tests/sim/two_link.h"
+
+namespace sidestep {
+namespace {
+
+// An arm that slowly swings, and a sensor; about ten seconds.
+Scenario SwingingScenario() {
+  Scenario scenario = TwoLinkScenario();
+  scenario.q_start = Eigen::Vector2d(-1, 0);
+  scenario.q_goal = Eigen::Vector2d(1, 0);
+  scenario.horizon_s = 10;
+  scenario.step_s = 0.5;
+  scenario.planner = "straight_line";
+  scenario.epsilon_m = 0.1;
+  scenario.sigma_obs = 0.1;
+  scenario.max_iterations = 1;
+  scenario.knowledge = "execute_and_update";
+  scenario.predictor = "two_frame";
+  scenario.replan_rate_hz = 0.2;
+  scenario.latency_s = 0.1;
+  scenario.seed = 7;
+  return scenario;
+}
+
+Recording Record(const Scenario& scenario) {
+  const auto make_world = [](const Scenario& of, const RobotModel& robot) {
+    auto simulation = std::make_shared<Simulation>(of, robot, kTestModels);
+    EpisodeWorld world;
+    world.robot = &simulation->robot();
+    world.sensor = &simulation->sensor();
+    world.truth = &simulation->truth();
+    world.model_xml = simulation->model_xml();
+    world.joints = simulation->joints();
+    world.obstacles = simulation->obstacles();
+    world.owner = simulation;
+    return world;
+  };
+  return RunEpisode(scenario, TwoLink(scenario), make_world).recording;
+}
+
+// The grids that a trace tells of, one a scan.
+std::vector<std::vector<std::uint8_t>> GridsOf(const Recording& recording, const GridSpec& grid) {
+  std::vector<std::vector<std::uint8_t>> grids;
+  std::vector<std::uint8_t> cells(grid.num_cells(), 0);
+  for (const ObservationRecord& observation : recording.observations) {
+    for (const std::int64_t cell : observation.changed_cells) {
+      cells[static_cast<std::size_t>(cell)] ^= 1;
+    }
+    grids.push_back(cells);
+  }
+  return grids;
+}
+
+// Mean, and how far it is from `expected` in standard errors.
+double StandardErrorsOff(const std::vector<double>& values, double expected, double deviation) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  const auto n = static_cast<double>(values.size());
+  return std::abs(sum / n - expected) / (deviation / std::sqrt(n));
+}
+
+// The chance that a normal variable of this deviation falls into [low, high).
+double NormalPart(double low, double high, double deviation) {
+  const double scale = 1 / (deviation * std::sqrt(2.0));
+  return 0.5 * (std::erf(high * scale) - std::erf(low * scale));
+}
+
+// Whether counts of cells along one axis, by their offset from the middle, are those of a normal
+// variable that is rounded to cells.
+void ExpectNormalCounts(const std::map<int, int>& counts, double cell_m, double middle_m,
+                        double deviation_m) {
+  int total = 0;
+  for (const auto& [offset, count] : counts) total += count;
+  for (int offset = -3; offset <= 3; ++offset) {
+    const double low = (offset - 0.5) * cell_m - middle_m;
+    const double p = NormalPart(low, low + cell_m, deviation_m);
+    const auto found = counts.find(offset);
+    EXPECT_NEAR(found == counts.end() ? 0 : found->second, p * total,
+                4 * std::sqrt(total * p * (1 - p)) + 1)
+        << "cells from the middle: " << offset;
+  }
+}
+
+TEST(SensorDelivery, HasItsRateLatencyJitterAndDropout) {
+  Scenario scenario = SwingingScenario();
+  scenario.sensor.rate_hz = 40;
+  scenario.sensor.latency_s = 0.05;
+  scenario.sensor.jitter_s = 0.02;  // less than a period: none overtakes another
+  scenario.sensor.dropout = 0.2;
+  const Recording recording = Record(scenario);
+  const double end_s = recording.control.back().t.seconds();
+  const double num_captures = std::floor((end_s - 0.07) * 40) + 1;
+  std::vector<double> delays;
+  for (const ObservationRecord& observation : recording.observations) {
+    const double k = observation.t.seconds() * 40;
+    EXPECT_NEAR(k, std::round(k), 1e-9);
+    const double delay = observation.t_arrival.seconds() - observation.t.seconds();
+    EXPECT_GE(delay, 0.05 - 1e-9);
+    EXPECT_LT(delay, 0.071);  // rounded up to a tick
+    delays.push_back(delay);
+  }
+  ASSERT_GT(delays.size(), 250u);
+  EXPECT_LT(StandardErrorsOff(delays, 0.05 + 0.01 + 0.0005, 0.02 / std::sqrt(12.0)), 4);
+  EXPECT_NEAR(static_cast<double>(delays.size()), 0.8 * num_captures,
+              4 * std::sqrt(0.2 * 0.8 * num_captures) + 1);
+}
+
+TEST(SensorDelivery, ThrowsAwayScansThatNewerOnesOvertook) {
+  Scenario scenario = SwingingScenario();
+  scenario.sensor.rate_hz = 100;
+  scenario.sensor.jitter_s = 0.05;
+  const Recording recording = Record(scenario);
+  const std::vector<ObservationRecord>& observations = recording.observations;
+  ASSERT_GT(observations.size(), 100u);
+  for (std::size_t i = 1; i < observations.size(); ++i) {
+    EXPECT_LT(observations[i - 1].t, observations[i].t);
+    EXPECT_LE(observations[i - 1].t_arrival, observations[i].t_arrival);
+  }
+  EXPECT_LT(static_cast<double>(observations.size()),
+            0.9 * 100 * recording.control.back().t.seconds());
+}
+
+TEST(SensorDelivery, WithoutImperfectionsIsPromptAndComplete) {
+  Scenario scenario = SwingingScenario();
+  const Recording recording = Record(scenario);
+  for (std::size_t k = 0; k < recording.observations.size(); ++k) {
+    EXPECT_NEAR(recording.observations[k].t.seconds(), static_cast<double>(k) / 30, 1e-3);
+    EXPECT_EQ(recording.observations[k].t, recording.observations[k].t_arrival);
+  }
+}
+
+TEST(OccupancyNoise, FlipsCellsAsOftenAsItSays) {
+  Scenario scenario = SwingingScenario();
+  scenario.static_boxes = {{"shelf", Pose::Translation({0, 0.7, 0.4}), {0.4, 0.2, 0.3}}};
+  const std::vector<std::uint8_t> truth = GridsOf(Record(scenario), scenario.grid).front();
+  scenario.sensor.noise = OccupancyNoise{.false_filled = 0.002, .false_free = 0.1};
+  const auto grids = GridsOf(Record(scenario), scenario.grid);
+  double free_cells = 0, false_filled = 0, filled_cells = 0, false_free = 0;
+  for (const std::vector<std::uint8_t>& cells : grids) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      (truth[i] != 0 ? filled_cells : free_cells) += 1;
+      if (truth[i] == 0 && cells[i] != 0) ++false_filled;
+      if (truth[i] != 0 && cells[i] == 0) ++false_free;
+    }
+  }
+  ASSERT_GT(grids.size(), 200u);
+  EXPECT_NEAR(false_filled, 0.002 * free_cells, 4 * std::sqrt(0.002 * free_cells));
+  EXPECT_NEAR(false_free, 0.1 * filled_cells, 4 * std::sqrt(0.1 * 0.9 * filled_cells));
+}
+
+TEST(OccupancyNoise, DisplacesPointsByItsDeviationAlongEachAxis) {
+  Scenario scenario = SwingingScenario();
+  scenario.sensor.rate_hz = 200;
+  const Eigen::Vector3d p_WCell = scenario.grid.Center(20, 40, 30);
+  scenario.static_boxes = {{"grain", Pose::Translation(p_WCell), Eigen::Vector3d::Constant(0.02)}};
+  constexpr double kDeviation = 0.03;
+  scenario.sensor.noise = OccupancyNoise{.position_noise_m = kDeviation};
+  std::map<int, int> counts[3];
+  for (const std::vector<std::uint8_t>& cells : GridsOf(Record(scenario), scenario.grid)) {
+    const auto filled = std::find(cells.begin(), cells.end(), 1);
+    ASSERT_NE(filled, cells.end());
+    const Eigen::Vector3d p_W =
+        scenario.grid.CenterOf(static_cast<std::size_t>(filled - cells.begin()));
+    for (int a = 0; a < 3; ++a) {
+      ++counts[a][static_cast<int>(std::round((p_W - p_WCell)(a) / scenario.grid.cell_m))];
+    }
+  }
+  for (const std::map<int, int>& along_axis : counts) {
+    ExpectNormalCounts(along_axis, scenario.grid.cell_m, 0, kDeviation);
+  }
+}
+
+TEST(DepthCamera, HasTheNoiseThatItSaysAtItsDepth) {
+  Scenario scenario = SwingingScenario();
+  scenario.sensor.name = "depth_camera";
+  scenario.sensor.rate_hz = 200;
+  // One ray along x through the middles of cells, onto a wall in the middle of cell 40.
+  const Eigen::Vector3d p_WWall = scenario.grid.Center(40, 45, 35);
+  scenario.static_boxes = {
+      {"wall", Pose::Translation(p_WWall + Eigen::Vector3d(0.1, 0, 0)), {0.2, 0.3, 0.3}}};
+  CameraSettings camera;
+  camera.position_m = p_WWall - Eigen::Vector3d(2, 0, 0);
+  camera.look_at_m = p_WWall;
+  camera.width = camera.height = 1;
+  camera.noise_per_m = 0.01;
+  camera.pixel_dropout = 0.25;
+  camera.unseen = "free";
+  scenario.sensor.camera = camera;
+  const Recording recording = Record(scenario);
+  std::map<int, int> counts;
+  int measured = 0;
+  for (const std::vector<std::uint8_t>& cells : GridsOf(recording, scenario.grid)) {
+    const auto filled = std::find(cells.begin(), cells.end(), 1);
+    if (filled == cells.end()) continue;
+    ++measured;
+    const Eigen::Vector3d p_W =
+        scenario.grid.CenterOf(static_cast<std::size_t>(filled - cells.begin()));
+    ++counts[static_cast<int>(std::round((p_W - p_WWall).x() / scenario.grid.cell_m))];
+  }
+  const auto scans = static_cast<double>(recording.observations.size());
+  EXPECT_NEAR(measured, 0.75 * scans, 4 * std::sqrt(0.75 * 0.25 * scans));
+  ExpectNormalCounts(counts, scenario.grid.cell_m, 0, 0.01 * 2 * 2);
+}
+
+TEST(TagCamera, HasTheErrorsThatItsCovarianceSays) {
+  Scenario scenario = SwingingScenario();
+  scenario.moving_obstacles = {
+      Passing("cart", Box{{0.3, 0.2, 0.2}}, {0.8, -0.9, 0.6}, {0, 1, 0}, 0.15)};
+  scenario.moving_obstacles[0].rpy_rad = {0.1, -0.2, 0.7};
+  scenario.sensor.name = "tags";
+  scenario.sensor.rate_hz = 50;
+  TagSettings tags;
+  tags.position_m = {2.5, 0, 1.5};
+  tags.across_noise = 0.003;
+  tags.along_noise_per_m = 0.01;
+  tags.rotation_noise_rad = 0.03;
+  scenario.sensor.tags = tags;
+  const Recording recording = Record(scenario);
+
+  std::vector<double> squares, across, along;
+  for (const ObservationRecord& observation : recording.observations) {
+    ASSERT_EQ(observation.objects.size(), 1u);
+    const SeenObject& seen = observation.objects[0];
+    EXPECT_EQ(seen.id, "cart");
+    const Pose X_WO = PoseAt(scenario.moving_obstacles[0], observation.t);
+    Eigen::Matrix<double, 6, 1> error;
+    error.head<3>() = seen.X_WO.translation() - X_WO.translation();
+    const Eigen::AngleAxisd turn(X_WO.rotation().conjugate() * seen.X_WO.rotation());
+    error.tail<3>() = turn.angle() * turn.axis();
+    squares.push_back(error.dot(seen.covariance.llt().solve(error)));
+    const Eigen::Vector3d sight = X_WO.translation() - tags.position_m;
+    const double d = sight.norm(), e = error.head<3>().dot(sight / d);
+    along.push_back(std::pow(e / (0.01 * d * d), 2));
+    across.push_back((error.head<3>().squaredNorm() - e * e) / std::pow(0.003 * d, 2));
+  }
+  ASSERT_GT(squares.size(), 400u);
+  EXPECT_LT(StandardErrorsOff(squares, 6, std::sqrt(12.0)), 4);  // chi-squared of 6 degrees
+  EXPECT_LT(StandardErrorsOff(along, 1, std::sqrt(2.0)), 4);
+  EXPECT_LT(StandardErrorsOff(across, 2, std::sqrt(4.0)), 4);
+}
+
+TEST(TagCamera, DoesNotFindWhatIsFarAwayOrBehindSomething) {
+  Scenario scenario = SwingingScenario();
+  scenario.static_boxes = {{"screen", Pose::Translation({1.2, 0.4, 0.6}), {0.02, 0.4, 0.6}}};
+  scenario.moving_obstacles = {Passing("cart", Sphere{0.1}, {0.8, -0.9, 0.6}, {0, 1, 0}, 0.15)};
+  scenario.sensor.name = "tags";
+  scenario.sensor.tags = TagSettings{.position_m = {2, 0.4, 0.6}, .range_m = 1.5};
+  const Recording recording = Record(scenario);
+  int found = 0;
+  for (const ObservationRecord& observation : recording.observations) {
+    const Eigen::Vector3d p = PoseAt(scenario.moving_obstacles[0], observation.t).translation();
+    const double d = (p - scenario.sensor.tags->position_m).norm();
+    // Where the line of sight crosses the screen.
+    const double y = 0.4 + (p.y() - 0.4) * (2 - 1.2) / (2 - p.x());
+    if (std::abs(d - 1.5) < 0.01 || std::abs(std::abs(y - 0.4) - 0.2) < 0.02) continue;
+    const bool is_seen = d < 1.5 && std::abs(y - 0.4) > 0.2;
+    EXPECT_EQ(observation.objects.size(), is_seen ? 1u : 0u) << "at " << p.transpose();
+    if (is_seen) ++found;
+  }
+  EXPECT_GT(found, 5);
+}
+
+// Every registered sensor, with the settings that it needs.
+class EverySensor : public ::testing::TestWithParam<std::string> {
+ protected:
+  static Scenario Scene() {
+    Scenario scenario = SwingingScenario();
+    scenario.horizon_s = 2;
+    scenario.static_boxes = {{"shelf", Pose::Translation({0, 0.7, 0.4}), {0.4, 0.2, 0.3}}};
+    scenario.moving_obstacles = {
+        Passing("cart", Box{{0.3, 0.2, 0.2}}, {0.8, -0.9, 0.6}, {0, 1, 0}, 0.4)};
+    scenario.sensor.name = GetParam();
+    scenario.sensor.latency_s = 0.03;
+    scenario.sensor.dropout = 0.1;
+    if (GetParam() == "occupancy") scenario.sensor.noise = OccupancyNoise{0.001, 0.1, 0.01};
+    if (GetParam() == "depth_camera") {
+      CameraSettings camera;
+      camera.position_m = {2, 0, 1.5};
+      camera.look_at_m = {0, 0, 0.4};
+      camera.width = 40;
+      camera.height = 30;
+      camera.noise_per_m = 0.003;
+      scenario.sensor.camera = camera;
+    }
+    if (GetParam() == "tags") scenario.sensor.tags = TagSettings{.position_m = {2, 0, 1.5}};
+    return scenario;
+  }
+};
+
+bool AreEqual(const Recording& a, const Recording& b) {
+  return std::equal(a.observations.begin(), a.observations.end(), b.observations.begin(),
+                    b.observations.end(), [](const auto& x, const auto& y) {
+                      const auto same = [](const SeenObject& s, const SeenObject& o) {
+                        return s.X_WO.translation() == o.X_WO.translation();
+                      };
+                      return x.t == y.t && x.t_arrival == y.t_arrival &&
+                             x.changed_cells == y.changed_cells &&
+                             std::equal(x.objects.begin(), x.objects.end(), y.objects.begin(),
+                                        y.objects.end(), same);
+                    });
+}
+
+TEST_P(EverySensor, SaysTheSameAgainForTheSameSeedAndOtherThingsForAnother) {
+  Scenario scenario = Scene();
+  const Recording first = Record(scenario);
+  EXPECT_GT(first.observations.size(), 30u);
+  EXPECT_TRUE(AreEqual(first, Record(scenario)));
+  scenario.seed = 8;
+  EXPECT_FALSE(AreEqual(first, Record(scenario)));
+}
+
+TEST_P(EverySensor, ServesEveryKindOfKnowledge) {
+  for (const char* const knowledge :
+       {"static", "execute_and_update", "prediction", "full_knowledge"}) {
+    Scenario scenario = Scene();
+    scenario.knowledge = knowledge;
+    scenario.replan_rate_hz = 5;
+    const Recording recording = Record(scenario);
+    EXPECT_GT(recording.cycles.size(), 5u) << knowledge;
+  }
+}
+
+TEST_P(EverySensor, RefusesTheSettingsOfAnother) {
+  Scenario scenario = Scene();
+  scenario.sensor.line = 12;
+  scenario.sensor.noise = OccupancyNoise{};
+  scenario.sensor.camera = CameraSettings{};
+  scenario.sensor.tags = TagSettings{};
+  EXPECT_THAT([&] { Record(scenario); },
+              ::testing::ThrowsMessage<InputError>(::testing::MatchesRegex(
+                  "two_link.yaml:12: sensor.(noise|camera|tags): is not for the sensor '" +
+                  GetParam() + "'")));
+}
+
+INSTANTIATE_TEST_SUITE_P(Registered, EverySensor, ::testing::ValuesIn(SensorNames()),
+                         [](const auto& test) { return test.param; });
+
+TEST(EverySensorThatNeedsSettings, SaysSo) {
+  for (const char* const name : {"depth_camera", "tags"}) {
+    Scenario scenario = SwingingScenario();
+    scenario.sensor.name = name;
+    EXPECT_THROW(Record(scenario), InputError) << name;
+  }
+}
+
+}  // namespace
+}  // namespace sidestep

@@ -1,0 +1,17 @@
+// Any text is refused with an InputError, or is a scenario whose own text is one, too.
+#include <string>
+
+#include "core/input_error.h"
+#include "scenarios/scenario.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  const std::string text(reinterpret_cast<const char*>(bytes), size);
+  std::string written;
+  try {
+    written = sidestep::ToYaml(sidestep::ParseScenario(text, "fuzz.yaml"));
+  } catch (const sidestep::InputError&) {
+    return 0;
+  }
+  sidestep::ParseScenario(written, "written.yaml");  // Not caught: must be accepted.
+  return 0;
+}

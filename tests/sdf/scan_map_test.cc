@@ -1,0 +1,161 @@
+#include "sdf/map/scan_map.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace sidestep {
+namespace {
+
+const GridSpec kGrid = {{-0.95, -0.95, -0.95}, 0.1, {20, 20, 20}};
+
+std::size_t CellAt(const Eigen::Vector3d& p_W) {
+  const auto [i, j, k] = kGrid.CellOf(p_W);
+  return kGrid.Index(i, j, k);
+}
+
+// A camera at the origin of W that looks along x.
+Scan Surface(const std::vector<Eigen::Vector3d>& hits,
+             const std::vector<Eigen::Vector3d>& free_ends, double t_s = 0) {
+  Scan scan;
+  scan.t = EpisodeTime(t_s);
+  scan.kind = ScanKind::kSurface;
+  scan.p_CP.resize(3, static_cast<Eigen::Index>(hits.size()));
+  for (std::size_t n = 0; n < hits.size(); ++n) {
+    scan.p_CP.col(static_cast<Eigen::Index>(n)) = hits[n];
+  }
+  scan.p_CFree.resize(3, static_cast<Eigen::Index>(free_ends.size()));
+  for (std::size_t n = 0; n < free_ends.size(); ++n) {
+    scan.p_CFree.col(static_cast<Eigen::Index>(n)) = free_ends[n];
+  }
+  return scan;
+}
+
+bool Filled(const OccupancyGrid& grid, const Eigen::Vector3d& p_W) {
+  return grid.cells[CellAt(p_W)] != 0;
+}
+
+TEST(CellsOnTheWay, AreThoseThatManySamplesOfTheLineFallInto) {
+  std::mt19937 generator(1);
+  std::uniform_real_distribution<double> anywhere(-1.5, 1.5);
+  for (int run = 0; run < 500; ++run) {
+    const Eigen::Vector3d start(anywhere(generator), anywhere(generator), anywhere(generator));
+    const Eigen::Vector3d end(anywhere(generator), anywhere(generator), anywhere(generator));
+    std::vector<std::size_t> cells;
+    VisitCellsOnTheWay(kGrid, start, end, &cells);
+    std::vector<std::size_t> sampled;
+    constexpr int kSamples = 3000;
+    for (int n = 0; n <= kSamples; ++n) {
+      const Eigen::Vector3d p = start + (end - start) * n / kSamples;
+      const auto cell = kGrid.CellOf(p);
+      if (!kGrid.Contains(cell[0], cell[1], cell[2]) || cell == kGrid.CellOf(end)) continue;
+      const std::size_t index = kGrid.Index(cell[0], cell[1], cell[2]);
+      if (sampled.empty() || sampled.back() != index) sampled.push_back(index);
+    }
+    // Sampling may step over a corner that the line just cuts, never the other way round.
+    std::size_t at = 0;
+    for (const std::size_t cell : sampled) {
+      while (at < cells.size() && cells[at] != cell) ++at;
+      ASSERT_LT(at, cells.size()) << "run " << run;
+    }
+    EXPECT_LE(cells.size(), sampled.size() + 8) << "run " << run;
+    std::vector<std::size_t> sorted = cells;
+    std::sort(sorted.begin(), sorted.end());
+    EXPECT_EQ(std::adjacent_find(sorted.begin(), sorted.end()), sorted.end()) << "visited twice";
+  }
+}
+
+TEST(CellsOnTheWay, OfALineAlongAnAxisAreARow) {
+  std::vector<std::size_t> cells;
+  VisitCellsOnTheWay(kGrid, {0.05, 0.05, 0.05}, {0.55, 0.05, 0.05}, &cells);
+  ASSERT_EQ(cells.size(), 5u);
+  for (std::size_t n = 0; n < 5; ++n) {
+    EXPECT_EQ(cells[n], CellAt({0.05 + 0.1 * static_cast<double>(n), 0.05, 0.05}));
+  }
+}
+
+TEST(CellsOnTheWay, AreNoneForALineBesideTheGrid) {
+  std::vector<std::size_t> cells;
+  VisitCellsOnTheWay(kGrid, {-2, 3, 0}, {2, 3, 0}, &cells);
+  VisitCellsOnTheWay(kGrid, {0.3, 0.3, 0.3}, {0.3, 0.3, 0.3}, &cells);
+  EXPECT_TRUE(cells.empty());
+}
+
+const Eigen::Vector3d kHit(0.55, 0.05, 0.05), kBefore(0.35, 0.03, 0.03), kBehind(0.85, 0.05, 0.05);
+
+TEST(ScanMap, FillsTheSurfaceAndTreatsWhatIsBehindAsConfigured) {
+  const struct {
+    UnseenSpace unseen;
+    bool behind;
+  } cases[] = {
+      {UnseenSpace::kFree, false}, {UnseenSpace::kFilled, true}, {UnseenSpace::kRemembered, false}};
+  for (const auto& [unseen, behind] : cases) {
+    ScanMap map(kGrid, unseen);
+    const OccupancyGrid grid = map.Update(Surface({kHit}, {}));
+    EXPECT_TRUE(Filled(grid, kHit)) << ToString(unseen);
+    EXPECT_FALSE(Filled(grid, kBefore)) << ToString(unseen);
+    EXPECT_EQ(Filled(grid, kBehind), behind) << ToString(unseen);
+  }
+}
+
+TEST(ScanMap, SeesThatASpaceIsFreeWhereARayMeetsNothing) {
+  ScanMap map(kGrid, UnseenSpace::kFilled);
+  const OccupancyGrid grid = map.Update(Surface({}, {{3, 0.17, 0.17}}));
+  EXPECT_FALSE(Filled(grid, {0.85, 0.05, 0.05}));
+  EXPECT_TRUE(Filled(grid, {0.85, 0.45, 0.05}));
+}
+
+TEST(ScanMap, RemembersWhatItDoesNotSeeUntilItLooksAgain) {
+  ScanMap remembering(kGrid, UnseenSpace::kRemembered), forgetting(kGrid, UnseenSpace::kFree);
+  for (ScanMap* const map : {&remembering, &forgetting}) {
+    map->Update(Surface({kHit}, {}, 0));
+    const OccupancyGrid elsewhere = map->Update(Surface({{-0.55, 0.05, 0.05}}, {}, 1));
+    EXPECT_EQ(Filled(elsewhere, kHit), map == &remembering);
+    const OccupancyGrid gone = map->Update(Surface({}, {kBehind}, 2));
+    EXPECT_FALSE(Filled(gone, kHit));
+  }
+}
+
+TEST(ScanMap, KeepsASurfaceThatAnotherRayOfTheSameScanPasses) {
+  ScanMap map(kGrid, UnseenSpace::kFree);
+  const OccupancyGrid grid = map.Update(Surface({kHit}, {kBehind}));
+  EXPECT_TRUE(Filled(grid, kHit));
+}
+
+TEST(ScanMap, TakesAScanOfSolidsForTheWholeTruth) {
+  ScanMap map(kGrid, UnseenSpace::kFilled);
+  Scan scan = Surface({kHit}, {});
+  scan.kind = ScanKind::kSolid;
+  EXPECT_EQ(map.Update(scan).CountFilled(), 1u);
+}
+
+TEST(ScanMap, LeavesOutRaysThatAreNotFinite) {
+  ScanMap map(kGrid, UnseenSpace::kFilled);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const OccupancyGrid grid = map.Update(Surface({{nan, 0, 1}}, {{0, nan, 1}}));
+  EXPECT_EQ(grid.CountFilled(), kGrid.num_cells());
+}
+
+TEST(UnseenSpace, HasAWordForEachKind) {
+  for (const char* const word : {"free", "filled", "remembered"}) {
+    EXPECT_EQ(ToString(UnseenSpaceFromString(word)), word);
+  }
+  EXPECT_THROW(UnseenSpaceFromString("fog"), std::invalid_argument);
+}
+
+TEST(FillObjects, FillsTheCellsWhoseCentresAreInsideATurnedShape) {
+  ObjectObservation object;
+  object.shape = Box{{0.6, 0.3, 0.4}};
+  object.X_WO = Pose::FromRollPitchYaw({0.3, 0.2, 0.9}, {0.11, -0.52, 0.7});
+  OccupancyGrid grid(kGrid);
+  FillObjects({object}, &grid);
+  for (std::size_t cell = 0; cell < grid.cells.size(); ++cell) {
+    const Eigen::Vector3d p_OCell = object.X_WO.Inverse() * kGrid.CenterOf(cell);
+    EXPECT_EQ(grid.cells[cell] != 0, SignedDistance(object.shape, p_OCell) < 0);
+  }
+  EXPECT_GT(grid.CountFilled(), 40u);
+}
+
+}  // namespace
+}  // namespace sidestep
