@@ -21,24 +21,6 @@ constexpr double kAfterGoal = 0.5;     // s of episode after the goal is reached
 constexpr double kHorizons = 2;        // an episode lasts at most this many horizons
 constexpr double kTimeEpsilon = 1e-9;  // s; far below a physics step, far above rounding
 
-WorldModelOptions MakeWorldModelOptions(const Scenario& scenario, const RobotModel& robot,
-                                        const EpisodeWorld& world) {
-  WorldModelOptions options;
-  options.knowledge = KnowledgeFromString(scenario.knowledge);
-  options.predictor = scenario.predictor;
-  options.growth_sigmas = scenario.growth_sigmas;
-  options.growth_limit_m = scenario.growth_limit_m;
-  options.grid = scenario.grid;
-  if (scenario.sensor.camera) {
-    options.unseen = UnseenSpaceFromString(scenario.sensor.camera->unseen);
-  }
-  options.max_distance_m = scenario.epsilon_m + robot.largest_sphere_radius_m();
-  if (world.truth != nullptr) {
-    options.true_obstacles = [truth = world.truth](EpisodeTime t) { return truth->ObstaclesAt(t); };
-  }
-  return options;
-}
-
 Recording BeginRecording(const Scenario& scenario, const RobotModel& robot,
                          const EpisodeWorld& world) {
   Recording recording;
@@ -210,6 +192,24 @@ class Loop {
 };
 
 }  // namespace
+
+WorldModelOptions MakeWorldModelOptions(const Scenario& scenario, const RobotModel& robot,
+                                        const EpisodeWorld& world) {
+  WorldModelOptions options;
+  options.knowledge = KnowledgeFromString(scenario.knowledge);
+  options.predictor = scenario.predictor;
+  options.growth_sigmas = scenario.growth_sigmas;
+  options.growth_limit_m = scenario.growth_limit_m;
+  options.grid = scenario.grid;
+  if (scenario.sensor.camera) {
+    options.unseen = UnseenSpaceFromString(scenario.sensor.camera->unseen);
+  }
+  options.max_distance_m = scenario.epsilon_m + robot.largest_sphere_radius_m();
+  if (world.truth != nullptr) {
+    options.true_obstacles = [truth = world.truth](EpisodeTime t) { return truth->ObstaclesAt(t); };
+  }
+  return options;
+}
 
 std::string ToString(Outcome outcome) {
   switch (outcome) {

@@ -12,6 +12,7 @@
 #include "robot/sensor.h"
 #include "robot/world_truth.h"
 #include "scenarios/scenario.h"
+#include "sdf/world_model.h"
 
 namespace sidestep {
 
@@ -27,6 +28,10 @@ struct EpisodeWorld {
 
 /// Makes the world of a scenario; simulation and hardware each have one.
 using WorldFactory = std::function<EpisodeWorld(const Scenario&, const RobotModel&)>;
+
+/// How the scenario's model of the world is made, fed from `world`, which must outlive it.
+WorldModelOptions MakeWorldModelOptions(const Scenario& scenario, const RobotModel& robot,
+                                        const EpisodeWorld& world);
 
 enum class Outcome {
   kGoal,          ///< reached the goal and touched nothing

@@ -69,8 +69,7 @@ class TaskChecker {
 
  private:
   [[noreturn]] void Fail(const std::string& key, const std::string& why) const {
-    const auto line = scenario_.lines.find(key);
-    throw InputError(scenario_.file, line == scenario_.lines.end() ? 1 : line->second, key, why);
+    throw WrongValue(scenario_, key, why);
   }
 
   const Scenario& scenario_;

@@ -19,6 +19,7 @@ void AddRenderCommand(CommandLine& line);
 void AddReproduceCommand(CommandLine& line);
 void AddStudyCommand(CommandLine& line);
 void AddDoctorCommand(CommandLine& line);
+void AddFieldCommand(CommandLine& line);
 void AddManualCommand(CommandLine& line);
 
 }  // namespace sidestep

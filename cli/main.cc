@@ -50,6 +50,7 @@ int Run(int argc, char** argv) {
   sidestep::AddStudyCommand(line);
   sidestep::AddListCommand(line);
   sidestep::AddDoctorCommand(line);
+  sidestep::AddFieldCommand(line);
   sidestep::AddManualCommand(line);
   if (argc > 1 && argv[1][0] != '-') CheckCommandName(line.app, argv[1]);
   try {

@@ -47,7 +47,7 @@ void CheckWord(const Scenario& scenario, const std::string& key, const std::stri
   for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
   const std::string why = "must be one of " + list + ", is '" + word + "'";
   if (flag != nullptr) throw InputError(flag, why);
-  throw InputError(scenario.file, scenario.lines.at(key), key, why);
+  throw WrongValue(scenario, key, why);
 }
 
 std::vector<std::string> ModelNames(const std::string& models, const std::string& file_suffix) {

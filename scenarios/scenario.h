@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/grid.h"
+#include "core/input_error.h"
 #include "core/pose.h"
 #include "core/shape.h"
 #include "core/time.h"
@@ -130,6 +131,9 @@ struct Scenario {
   /// planners, ...), by their path in the file, so that they can complain as the reader does.
   std::map<std::string, int> lines;
 };
+
+/// What to throw where the value of `key` (a path in the file, as in `lines`) is wrong.
+InputError WrongValue(const Scenario& scenario, const std::string& key, const std::string& why);
 
 /// Where an obstacle is at `t`. Before 0 it rests at its start.
 Pose PoseAt(const MovingObstacle& obstacle, EpisodeTime t);

@@ -92,7 +92,9 @@ void ReadStaticBoxes(const YamlReader& top, Scenario& scenario, std::set<std::st
   if (!top.Has("static_boxes")) return;
   for (const YamlReader& map : top.GetMaps("static_boxes")) {
     StaticBox box;
+    const std::string index = std::to_string(scenario.static_boxes.size());
     box.name = ReadName(map, names);
+    scenario.lines["static_boxes[" + index + "].name"] = map.Line("name");
     const Eigen::Vector3d center = map.GetVector3("center_m");
     const Eigen::Vector3d rpy =
         map.Has("rpy_rad") ? map.GetVector3("rpy_rad") : Eigen::Vector3d(0, 0, 0);
@@ -136,8 +138,10 @@ Shape ReadShape(const YamlReader& parent) {
 
 Eigen::Vector3d ReadDirection(const YamlReader& body) {
   const Eigen::Vector3d direction = body.GetVector3("direction");
-  if (!(direction.norm() > 1e-9)) body.Fail("direction", "must not be zero");
-  return direction.normalized();
+  const double length = direction.norm();
+  if (!(length > 1e-9)) body.Fail("direction", "must not be zero");
+  // One that was written as a unit vector is read as the same numbers.
+  return std::abs(length - 1) < 1e-12 ? direction : direction / length;
 }
 
 double ReadOptional(const YamlReader& map, const char* key, double otherwise) {
@@ -239,6 +243,7 @@ void ReadMovingObstacles(const YamlReader& top, Scenario& scenario, std::set<std
     MovingObstacle obstacle;
     const std::string index = std::to_string(scenario.moving_obstacles.size());
     obstacle.name = ReadName(map, names);
+    scenario.lines["moving_obstacles[" + index + "].name"] = map.Line("name");
     obstacle.shape = ReadShape(map);
     obstacle.rpy_rad = map.Has("rpy_rad") ? map.GetVector3("rpy_rad") : Eigen::Vector3d(0, 0, 0);
     obstacle.motion = ReadMotion(map);
@@ -382,6 +387,11 @@ Scenario Read(YamlReader top, const std::string& file, const Settings& settings)
 }
 
 }  // namespace
+
+InputError WrongValue(const Scenario& scenario, const std::string& key, const std::string& why) {
+  const auto line = scenario.lines.find(key);
+  return InputError(scenario.file, line == scenario.lines.end() ? 1 : line->second, key, why);
+}
 
 std::vector<std::string> ScenarioNames(const std::string& directory) {
   std::vector<std::string> names;

@@ -34,7 +34,7 @@ using TrueObstacles = std::function<std::vector<ObjectObservation>(EpisodeTime)>
 
 struct WorldModelOptions {
   Knowledge knowledge = Knowledge::kPrediction;
-  std::string predictor = "kalman_cv";  ///< a name of sdf/prediction/registry.h
+  std::string predictor = "kalman_cv";            ///< a name of sdf/prediction/registry.h
   UnseenSpace unseen = UnseenSpace::kRemembered;  ///< of scans of surfaces
   /// Under prediction, moving things are taken to be thicker by so many standard deviations of
   /// where they are predicted to be, in the worst direction, but by no more than the limit [m].

@@ -14,8 +14,7 @@ Eigen::VectorXd StartOf(const Scenario& scenario, const RobotModel& robot) {
   if (scenario.q_start.size() > 0) return scenario.q_start;
   const auto found = robot.configurations().find(scenario.start_name);
   if (found != robot.configurations().end()) return found->second;
-  const auto line = scenario.lines.find("task.start");
-  throw InputError(scenario.file, line == scenario.lines.end() ? 0 : line->second, "task.start",
+  throw WrongValue(scenario, "task.start",
                    robot.name() + " has no configuration '" + scenario.start_name + "'");
 }
 

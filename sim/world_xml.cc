@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
+#include <set>
 
 #include "core/input_error.h"
 #include "sim/mujoco_model.h"
@@ -331,11 +332,36 @@ void AddMovingObstacle(const Scenario& scenario, std::size_t index, const std::s
       models_dir + "/" + obstacle.appearance + "/" + obstacle.appearance + ".xml";
   if (!std::filesystem::is_regular_file(path)) {
     const std::string key = "moving_obstacles[" + std::to_string(index) + "].appearance";
-    const auto line = scenario.lines.find(key);
-    throw InputError(scenario.file, line == scenario.lines.end() ? 0 : line->second, key,
-                     "there is no " + path);
+    throw WrongValue(scenario, key, "there is no " + path);
   }
   AddPicture(obstacle, path, body);
+}
+
+// Names of bodies and geoms at or below `element`, as far as they have one.
+void CollectNames(const XMLElement* element, std::set<std::string>* names) {
+  for (; element != nullptr; element = element->NextSiblingElement()) {
+    const std::string kind = element->Name();
+    const char* const name = element->Attribute("name");
+    if (name != nullptr && (kind == "body" || kind == "geom")) names->insert(name);
+    CollectNames(element->FirstChildElement(), names);
+  }
+}
+
+// MuJoCo knows one body and one geom of a name.
+void RefuseNamesOfTheRobot(const Scenario& scenario, const XMLElement* worldbody) {
+  std::set<std::string> taken;
+  CollectNames(worldbody->FirstChildElement(), &taken);
+  const auto check = [&](const std::string& list, std::size_t i, const std::string& name) {
+    if (taken.count(name) == 0) return;
+    throw WrongValue(scenario, list + "[" + std::to_string(i) + "].name",
+                     "'" + name + "' is the name of a part of the robot '" + scenario.robot + "'");
+  };
+  for (std::size_t i = 0; i < scenario.static_boxes.size(); ++i) {
+    check("static_boxes", i, scenario.static_boxes[i].name);
+  }
+  for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
+    check("moving_obstacles", i, scenario.moving_obstacles[i].name);
+  }
 }
 
 }  // namespace
@@ -352,6 +378,7 @@ std::string BuildWorldXml(const Scenario& scenario, const std::vector<std::strin
   AddFloorAndLights(scenario, worldbody);
   AddCameras(scenario, worldbody);
   MergeRobot(scenario, models_dir + "/" + scenario.robot + "/" + scenario.robot + ".xml", world);
+  RefuseNamesOfTheRobot(scenario, worldbody);
   for (const StaticBox& box : scenario.static_boxes) AddStaticBox(box, worldbody);
   for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
     AddMovingObstacle(scenario, i, models_dir, worldbody);

@@ -12,7 +12,7 @@ namespace {
 
 using Names = std::set<std::string>;
 
-const Names kOtherFolders = {"cmake", "docs", "models", "tests", ".ci", ".github"};
+const Names kOtherFolders = {"cmake", "docs", "examples", "models", "tests", ".ci", ".github"};
 const std::string kBeforeAPath = " \t\n\"'`=:(,[<";
 
 bool StartsWith(std::string_view text, std::string_view prefix) {

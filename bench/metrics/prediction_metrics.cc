@@ -74,4 +74,20 @@ double PredictionError(const Recording& recording, HorizonOffset ahead) {
   return count > 0 ? std::sqrt(sum / count) : std::numeric_limits<double>::quiet_NaN();
 }
 
+double PredictionErrorAfter100Ms(const Recording& recording) {
+  return PredictionError(recording, HorizonOffset(0.1));
+}
+double PredictionErrorAfter300Ms(const Recording& recording) {
+  return PredictionError(recording, HorizonOffset(0.3));
+}
+double PredictionErrorAfter500Ms(const Recording& recording) {
+  return PredictionError(recording, HorizonOffset(0.5));
+}
+double PredictionErrorAfter1000Ms(const Recording& recording) {
+  return PredictionError(recording, HorizonOffset(1));
+}
+double PredictionErrorAfter2000Ms(const Recording& recording) {
+  return PredictionError(recording, HorizonOffset(2));
+}
+
 }  // namespace sidestep

@@ -11,4 +11,10 @@ namespace sidestep {
 /// to it in that cycle. NaN if nothing was predicted so far ahead, or the episode ended before.
 double PredictionError(const Recording& recording, HorizonOffset ahead);
 
+double PredictionErrorAfter100Ms(const Recording& recording);
+double PredictionErrorAfter300Ms(const Recording& recording);
+double PredictionErrorAfter500Ms(const Recording& recording);
+double PredictionErrorAfter1000Ms(const Recording& recording);
+double PredictionErrorAfter2000Ms(const Recording& recording);
+
 }  // namespace sidestep

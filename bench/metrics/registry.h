@@ -16,7 +16,7 @@ struct Metric {
   double (*compute)(const Recording&);
 };
 
-/// Every metric, in the order of reports. To add one: write a function, add a line.
+/// Every metric, in the order of reports. To add one: metrics.def.
 std::span<const Metric> Metrics();
 
 }  // namespace sidestep

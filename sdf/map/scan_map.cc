@@ -116,8 +116,8 @@ void FillObjects(const std::vector<ObjectObservation>& objects, OccupancyGrid* o
   for (const ObjectObservation& object : objects) {
     const double reach_m = HalfExtents(object.shape).norm();
     const Eigen::Vector3d p_WO = object.X_WO.translation();
-    const std::array<int, 3> low = grid.CellOf(p_WO.array() - reach_m);
-    const std::array<int, 3> high = grid.CellOf(p_WO.array() + reach_m);
+    const std::array<int, 3> low = grid.CellOf(p_WO - Eigen::Vector3d::Constant(reach_m));
+    const std::array<int, 3> high = grid.CellOf(p_WO + Eigen::Vector3d::Constant(reach_m));
     std::array<int, 3> first, last;
     for (std::size_t a = 0; a < 3; ++a) {
       first[a] = std::max(low[a], 0);

@@ -2,29 +2,22 @@
 
 #include <stdexcept>
 
-#include "sdf/prediction/imm.h"
-#include "sdf/prediction/kalman_ca.h"
-#include "sdf/prediction/kalman_cv.h"
-#include "sdf/prediction/kalman_turn.h"
-#include "sdf/prediction/stationary.h"
-#include "sdf/prediction/two_frame.h"
-
 namespace sidestep {
+
+#define SIDESTEP_PREDICTOR(name, make, file) std::unique_ptr<ObstaclePredictor> make();
+#include "sdf/prediction/predictors.def"
+#undef SIDESTEP_PREDICTOR
+
 namespace {
 
 struct Entry {
   const char* name;
   std::unique_ptr<ObstaclePredictor> (*make)();
 };
-
-// To add a predictor: one line here, and its files beside this one.
 constexpr Entry kPredictors[] = {
-    {"imm", &MakeImmPredictor},
-    {"kalman_ca", &MakeKalmanCaPredictor},
-    {"kalman_cv", &MakeKalmanCvPredictor},
-    {"kalman_turn", &MakeKalmanTurnPredictor},
-    {"stationary", &MakeStationaryPredictor},
-    {"two_frame", &MakeTwoFramePredictor},
+#define SIDESTEP_PREDICTOR(name, make, file) {name, &make},
+#include "sdf/prediction/predictors.def"
+#undef SIDESTEP_PREDICTOR
 };
 
 }  // namespace

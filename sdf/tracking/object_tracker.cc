@@ -67,13 +67,14 @@ TrackerTimes ObjectTracker::Update(const OccupancyGrid& occupancy, EpisodeTime t
   const std::vector<CellBox> views = LatestViews();
   std::vector<Track*> owners = Associate(components, t);
   static_occupancy_ = occupancy;
+  std::vector<int> wholes(components.size());  // what each is a part of, if it has just come off
   for (std::size_t c = 0; c < components.size(); ++c) {
     if (owners[c] != nullptr) {
       Follow(*owners[c], components[c], t);
     } else {
       owners[c] = Begin(components[c], t);
-      const int whole = FindWhole(views, components[c]);
-      Note(whole > 0 ? track_event::kSplit : track_event::kAppeared, *owners[c], t, whole);
+      wholes[c] = FindWhole(views, components[c]);
+      Note(wholes[c] > 0 ? track_event::kSplit : track_event::kAppeared, *owners[c], t, wholes[c]);
     }
     Track& track = *owners[c];
     track.first = components[c].first;
@@ -88,7 +89,7 @@ TrackerTimes ObjectTracker::Update(const OccupancyGrid& occupancy, EpisodeTime t
       for (const std::size_t cell : components[c].cells) static_occupancy_.cells[cell] = 0;
     }
   }
-  NoteMerges(components, owners, t);
+  NoteMerges(components, owners, wholes, t);
   std::erase_if(tracks_, [&](const auto& entry) {
     const Track& track = entry.second;
     const bool is_moving = track.state == State::kMoving;
@@ -135,7 +136,8 @@ int ObjectTracker::FindWhole(const std::vector<CellBox>& views, const Component&
 }
 
 void ObjectTracker::NoteMerges(const std::vector<Component>& components,
-                               const std::vector<Track*>& owners, EpisodeTime t) {
+                               const std::vector<Track*>& owners, const std::vector<int>& wholes,
+                               EpisodeTime t) {
   for (const auto& [id, track] : tracks_) {
     if (track.missed_scans != 1) continue;
     const Eigen::Vector3d p_WExpected = PredictPosition(track.object, t);
@@ -144,7 +146,7 @@ void ObjectTracker::NoteMerges(const std::vector<Component>& components,
       const bool is_inside =
           (p_WExpected.array() >= LowCorner(components[c], grid_).array()).all() &&
           (p_WExpected.array() <= HighCorner(components[c], grid_).array()).all();
-      if (is_inside) merged_with = owners[c]->object.id;
+      if (is_inside && wholes[c] != id) merged_with = owners[c]->object.id;
     }
     if (merged_with > 0) {
       Note(track_event::kMerged, track, t, merged_with);

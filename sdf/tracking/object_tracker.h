@@ -107,9 +107,10 @@ class ObjectTracker {
   // The thing whose latest view held all of `part`; 0: none.
   static int FindWhole(const std::vector<CellBox>& views, const Component& part);
   void Note(const char* what, const Track& track, EpisodeTime t, int other_id = 0);
-  // Looks for things that are one component now, and for those that were one before.
+  // Tells of things not found in this scan: whether they are one component with another thing now.
+  // `wholes`: the id of the thing that a component has come off, or 0.
   void NoteMerges(const std::vector<Component>& components, const std::vector<Track*>& owners,
-                  EpisodeTime t);
+                  const std::vector<int>& wholes, EpisodeTime t);
   void ReopenVanished(const OccupancyGrid& occupancy, EpisodeTime t);
   // For each component the track that it belongs to, or nothing.
   std::vector<Track*> Associate(const std::vector<Component>& components, EpisodeTime t);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -84,7 +85,15 @@ INSTANTIATE_TEST_SUITE_P(
             {"negative_radius.yaml:19: moving_obstacles[1].shape.sphere.radius_m: must be > 0"}},
         Mistake{"CompareNothing", {"compare"}, {"DIR"}},
         Mistake{"CompareNowhere", {"compare", "/nowhere"}, {"/nowhere/result.json: no such file"}},
-        Mistake{"RenderNothing", {"render"}, {"TRACE"}}),
+        Mistake{"RenderNothing", {"render"}, {"TRACE"}},
+        Mistake{"FieldWithoutAFile", {"field", "hsr_walkway"}, {"--out"}},
+        Mistake{"FieldAheadIsAWord",
+                {"field", "hsr_walkway", "--out", "x.png", "--ahead", "0,soon"},
+                {"--ahead", "soon"}},
+        Mistake{"ListOfAnUnknownKind", {"list", "wishes"}, {"KIND: must be one of scenarios,"}},
+        Mistake{"SensorWithoutItsSettings",
+                {"run", "hsr_walkway", "--set", "sensor.name=depth_camera"},
+                {"sensor.camera: is missing; the sensor 'depth_camera' needs it"}}),
     [](const auto& test) { return std::string(test.param.name); });
 
 TEST(Help, NamesEveryCommandAndTheExitCodes) {
@@ -99,13 +108,31 @@ TEST(Help, NamesEveryCommandAndTheExitCodes) {
   }
 }
 
+TEST(Field, IsDrawnOneSliceForEachTimeAhead) {
+  std::string folder = (std::filesystem::temp_directory_path() / "sidestep_field_XXXXXX").string();
+  ASSERT_NE(mkdtemp(folder.data()), nullptr);
+  const std::string file = folder + "/field.png";
+  const Finished finished =
+      Sidestep({"field", "hsr_walkway", "--time", "0.2", "--ahead", "0,0.4", "--out", file});
+  EXPECT_EQ(finished.exit_code, 0) << finished.err;
+  std::ifstream stream(file, std::ios::binary);
+  const std::string png{std::istreambuf_iterator<char>(stream), {}};
+  std::filesystem::remove_all(folder);
+  ASSERT_GT(png.size(), 24u);
+  EXPECT_EQ(png.substr(1, 3), "PNG");
+  const auto big_endian = [&](std::size_t at) {
+    return static_cast<unsigned char>(png[at]) * 256 + static_cast<unsigned char>(png[at + 1]);
+  };
+  EXPECT_EQ(big_endian(18), 2 * 3 * 96 + 6);  // two slices of 96 cells, a gap between them
+  EXPECT_EQ(big_endian(22), 3 * 96);
+}
+
 TEST(List, ShowsWhatCanBeNamed) {
   const Finished finished = Sidestep({"list"});
   EXPECT_EQ(finished.exit_code, 0);
-  EXPECT_THAT(finished.out,
-              AllOf(HasSubstr("hsr_walkway"), HasSubstr("full_knowledge"), HasSubstr("gpmp"),
-                    HasSubstr("two_frame"), HasSubstr("panda"), HasSubstr("min_clearance_m"),
-                    HasSubstr("--set pair=1|2|3")));
+  EXPECT_THAT(finished.out, AllOf(HasSubstr("hsr_walkway"), HasSubstr("full_knowledge"),
+                                  HasSubstr("gpmp"), HasSubstr("two_frame"), HasSubstr("panda"),
+                                  HasSubstr("min_clearance_m"), HasSubstr("--set pair=1|2|3")));
 }
 
 TEST(Doctor, FindsNothingMissingWhereTheTestsRun) {

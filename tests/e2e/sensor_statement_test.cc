@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
+#include <future>
 #include <map>
 #include <memory>
 
@@ -321,6 +323,17 @@ TEST_P(EverySensor, SaysTheSameAgainForTheSameSeedAndOtherThingsForAnother) {
   EXPECT_TRUE(AreEqual(first, Record(scenario)));
   scenario.seed = 8;
   EXPECT_FALSE(AreEqual(first, Record(scenario)));
+}
+
+TEST_P(EverySensor, SaysTheSameInTwoEpisodesAtOnceAsAlone) {
+  Scenario scenario = Scene();
+  scenario.horizon_s = 1;
+  scenario.step_s = 0.1;
+  const Recording alone = Record(scenario);
+  auto one = std::async(std::launch::async, [&] { return Record(scenario); });
+  auto other = std::async(std::launch::async, [&] { return Record(scenario); });
+  EXPECT_TRUE(AreEqual(alone, one.get()));
+  EXPECT_TRUE(AreEqual(alone, other.get()));
 }
 
 TEST_P(EverySensor, ServesEveryKindOfKnowledge) {

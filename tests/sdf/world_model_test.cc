@@ -265,7 +265,7 @@ TEST(GrownObjects, GoOnToTheClampWithoutAJump) {
   const Eigen::Vector3d p_WO = PassingBox().p_WO(t);
   double last_m = field->Sample(p_WO, t).distance_m;
   for (double x = 0; x < 0.7; x += 0.001) {
-    const double next_m = field->Sample(p_WO - Eigen::Vector3d(x, 0, 0), t).distance_m;
+    const double next_m = field->Sample(p_WO + Eigen::Vector3d(x, 0, 0), t).distance_m;
     EXPECT_LT(std::abs(next_m - last_m), 0.0015) << x;
     last_m = next_m;
   }

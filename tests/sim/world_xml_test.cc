@@ -206,6 +206,16 @@ TEST_F(BrokenModel, IsRefusedWithItsLine) {
       "/arm/arm.xml:2: include: a model must not refer to other files; build it from primitives");
 }
 
+TEST(WorldXml, RefusesTheNameOfAPartOfTheRobot) {
+  Scenario scenario = FullScenario();
+  scenario.moving_obstacles[1].name = "turret";
+  scenario.lines["moving_obstacles[1].name"] = 21;
+  EXPECT_THAT([&] { BuildWorldXml(scenario, {}, kTestModels); },
+              testing::ThrowsMessage<InputError>(
+                  "two_link.yaml:21: moving_obstacles[1].name: 'turret' is the name of a part of "
+                  "the robot 'two_link'"));
+}
+
 TEST(WorldXml, SaysWhichModelIsMissing) {
   Scenario scenario = FullScenario();
   scenario.moving_obstacles[0].appearance = "ghost";

@@ -1,0 +1,37 @@
+// A planner that stays where it is. Copy this file to planner/, add the line of planners.def beside
+// it to planner/planners.def, and `sidestep run hsr_walkway --set planner.name=hold_still` runs it.
+#include <memory>
+
+#include "planner/planner.h"
+#include "planner/planner_settings.h"
+
+namespace sidestep {
+namespace {
+
+class HoldStillPlanner final : public Planner {
+ public:
+  explicit HoldStillPlanner(const RobotModel& robot) : Planner(robot) {}
+
+ private:
+  PlanResult DoPlan(const PlanRequest& request) const override {
+    const int n = robot().num_joints(), num_states = request.num_states;
+    Trajectory trajectory;
+    trajectory.t_s = Eigen::VectorXd::LinSpaced(num_states, 0, num_states - 1) * request.step_s;
+    trajectory.q = request.q_start.replicate(1, num_states);
+    trajectory.v = Eigen::MatrixXd::Zero(n, num_states);
+    trajectory.v.col(0) = request.v_start;
+    if (request.initial) {  // What the robot does in any case is not the planner's to change.
+      trajectory.q.leftCols(request.num_fixed) = request.initial->q.leftCols(request.num_fixed);
+      trajectory.v.leftCols(request.num_fixed) = request.initial->v.leftCols(request.num_fixed);
+    }
+    return MakeResult(request, trajectory, /*converged=*/true);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Planner> MakeHoldStillPlanner(const RobotModel& robot, const PlannerSettings&) {
+  return std::make_unique<HoldStillPlanner>(robot);
+}
+
+}  // namespace sidestep

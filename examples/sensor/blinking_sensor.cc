@@ -1,0 +1,33 @@
+// A sensor that sees perfectly, but only in every other second. Copy this file to sim/ and add the
+// line of sensors.def beside it to sim/sensors.def.
+#include <cmath>
+
+#include "sim/occupancy_sensor.h"
+
+namespace sidestep {
+namespace {
+
+class BlinkingSensor final : public Sensor {
+ public:
+  explicit BlinkingSensor(std::unique_ptr<Sensor> sensor) : sensor_(std::move(sensor)) {}
+
+  EpisodeTime NextDue() const override { return sensor_->NextDue(); }
+
+  std::optional<Scan> Read() override {
+    std::optional<Scan> scan = sensor_->Read();
+    const bool is_shut = scan && std::fmod(scan->t.seconds(), 2) >= 1;
+    return is_shut ? std::nullopt : scan;
+  }
+
+ private:
+  std::unique_ptr<Sensor> sensor_;
+};
+
+}  // namespace
+
+std::unique_ptr<Sensor> MakeBlinkingSensor(const Scenario& scenario, const World& world) {
+  return std::make_unique<BlinkingSensor>(
+      std::make_unique<OccupancySensor>(world, scenario.grid, scenario.sensor.rate_hz));
+}
+
+}  // namespace sidestep
