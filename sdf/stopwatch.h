@@ -1,23 +1,22 @@
 #pragma once
 
-#include <chrono>
+#include "core/cpu_time.h"
 
 namespace sidestep {
 
-/// Measures how long stages take on the wall clock, for reports. Nothing may depend on it.
+/// Measures the CPU time of stages on this thread, for reports. Nothing may depend on it.
 class Stopwatch {
  public:
   /// Seconds since the last call, or since it was made.
   double Lap() {
-    const Clock::time_point now = Clock::now();
-    const double elapsed_s = std::chrono::duration<double>(now - start_).count();
-    start_ = now;
+    const double now_s = ThreadCpuSeconds();
+    const double elapsed_s = now_s - start_s_;
+    start_s_ = now_s;
     return elapsed_s;
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now();
+  double start_s_ = ThreadCpuSeconds();
 };
 
 }  // namespace sidestep

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -32,14 +33,14 @@ class MappedWorld : public WorldModel {
       throw std::invalid_argument("WorldModel: scans must come in the order of capture");
     }
     Stopwatch stopwatch;
-    occupancy_ = scan_map_.Update(scan);
-    LearnObjects(scan, &occupancy_);
+    occupancy_ = &scan_map_.Update(scan);
+    LearnObjects(scan);
     times_.map_s += stopwatch.Lap();
-    Learn(occupancy_, scan.t);
+    Learn(*occupancy_, scan.t);
     t_scan_ = scan.t;
   }
 
-  const OccupancyGrid& Occupancy() const final { return occupancy_; }
+  const OccupancyGrid& Occupancy() const final { return *occupancy_; }
 
   std::shared_ptr<const DistanceField> MakeField() final {
     if (!t_scan_) throw std::invalid_argument("WorldModel: no scan yet");
@@ -60,8 +61,11 @@ class MappedWorld : public WorldModel {
  protected:
   // Takes in the named objects of a scan. To one who does not look ahead they are solids like
   // others.
-  virtual void LearnObjects(const Scan& scan, OccupancyGrid* occupancy) {
-    FillObjects(scan.objects, occupancy);
+  virtual void LearnObjects(const Scan& scan) {
+    if (scan.objects.empty()) return;
+    with_objects_ = *occupancy_;
+    FillObjects(scan.objects, &with_objects_);
+    occupancy_ = &with_objects_;
   }
   // Takes in what is filled at time t.
   virtual void Learn(const OccupancyGrid& occupancy, EpisodeTime t) = 0;
@@ -71,7 +75,8 @@ class MappedWorld : public WorldModel {
 
   const WorldModelOptions options_;
   ScanMap scan_map_;
-  OccupancyGrid occupancy_;  // by the latest scan
+  OccupancyGrid with_objects_;  // what a scan and its named objects fill
+  const OccupancyGrid* occupancy_ = nullptr;  // by the latest scan
   StaticMap static_map_;
   std::optional<EpisodeTime> t_scan_;  // of the latest scan
   WorldModelTimes times_;
@@ -133,7 +138,7 @@ class PredictedWorld final : public MappedWorld {
     return options.growth_sigmas > 0 ? options.growth_limit_m : 0;
   }
 
-  void LearnObjects(const Scan& scan, OccupancyGrid*) override {
+  void LearnObjects(const Scan& scan) override {
     named_objects_.Update(scan.objects, scan.t);
   }
 
@@ -200,7 +205,7 @@ class KnownWorld final : public MappedWorld {
   }
 
  private:
-  void LearnObjects(const Scan&, OccupancyGrid*) override {}  // the truth is known
+  void LearnObjects(const Scan&) override {}  // the truth is known
 
   struct ShapeField {
     Eigen::Vector3d half_extents_m;
@@ -218,22 +223,7 @@ class KnownWorld final : public MappedWorld {
       }
     }
     OccupancyGrid still = occupancy;
-    const auto [nx, ny, nz] = still.spec.size;
-    for (int k = 0; k < nz; ++k) {
-      for (int j = 0; j < ny; ++j) {
-        for (int i = 0; i < nx; ++i) {
-          if (!still.At(i, j, k)) continue;
-          for (const ObjectObservation& obstacle : obstacles) {
-            // A quarter of a cell beyond the surface: a cell is filled when its centre is inside,
-            // and a rasteriser's rounding must not leave a skin of the obstacle behind.
-            const Eigen::Vector3d p_OCell = obstacle.X_WO.Inverse() * still.spec.Center(i, j, k);
-            if (SignedDistance(obstacle.shape, p_OCell) <= still.spec.cell_m / 4) {
-              still.cells[still.spec.Index(i, j, k)] = 0;
-            }
-          }
-        }
-      }
-    }
+    for (const ObjectObservation& obstacle : obstacles) Erase(obstacle, still);
     static_map_.Set(still);
     times_.map_s += stopwatch.Lap();
   }
@@ -247,6 +237,34 @@ class KnownWorld final : public MappedWorld {
     }
     return std::make_shared<CompositeField>(std::move(static_W), std::move(moving),
                                             options_.max_distance_m);
+  }
+
+  // Frees the cells that an obstacle fills. A quarter of a cell beyond its surface, too: a cell is
+  // filled when its centre is inside, and a rasteriser's rounding must not leave a skin behind.
+  static void Erase(const ObjectObservation& obstacle, OccupancyGrid& grid) {
+    const GridSpec& spec = grid.spec;
+    const Pose X_OW = obstacle.X_WO.Inverse();
+    const Eigen::Vector3d reach_m =
+        obstacle.X_WO.rotation().toRotationMatrix().cwiseAbs() * HalfExtents(obstacle.shape) +
+        Eigen::Vector3d::Constant(spec.cell_m);
+    const Eigen::Vector3d p_WO = obstacle.X_WO.translation();
+    std::array<int, 3> first = spec.CellOf(p_WO - reach_m);
+    std::array<int, 3> last = spec.CellOf(p_WO + reach_m);
+    for (std::size_t a = 0; a < 3; ++a) {
+      first[a] = std::max(first[a], 0);
+      last[a] = std::min(last[a], spec.size[a] - 1);
+    }
+    for (int k = first[2]; k <= last[2]; ++k) {
+      for (int j = first[1]; j <= last[1]; ++j) {
+        for (int i = first[0]; i <= last[0]; ++i) {
+          if (!grid.At(i, j, k)) continue;
+          const Eigen::Vector3d p_OCell = X_OW * spec.Center(i, j, k);
+          if (SignedDistance(obstacle.shape, p_OCell) <= spec.cell_m / 4) {
+            grid.cells[spec.Index(i, j, k)] = 0;
+          }
+        }
+      }
+    }
   }
 
   std::vector<ShapeField> fields_;  // of each obstacle, in the order of true_obstacles

@@ -46,7 +46,7 @@ struct WorldModelOptions {
   TrueObstacles true_obstacles;  ///< must be set for full_knowledge
 };
 
-/// Seconds of wall clock that the stages of one planning cycle took, for the report only.
+/// CPU seconds that the stages of one planning cycle took, for the report only.
 struct WorldModelTimes {
   double map_s = 0, segment_s = 0, track_s = 0, predict_s = 0;
 };

@@ -10,51 +10,14 @@
 #include <hwy/aligned_allocator.h>
 #include <hwy/targets.h>
 
-#include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <limits>
 
+#include "bench/micro/furnished_room.h"
 #include "sdf/map/fast_distance_transform.h"
 
 namespace sidestep {
 namespace {
-
-constexpr double kRoom_m = 3.84;
-
-void AddBox(const Eigen::Vector3d& lower_m, const Eigen::Vector3d& upper_m, OccupancyGrid& grid) {
-  const std::array<int, 3> lower = grid.spec.CellOf(lower_m);
-  const std::array<int, 3> upper = grid.spec.CellOf(upper_m);
-  for (int k = lower[2]; k < upper[2]; ++k) {
-    for (int j = lower[1]; j < upper[1]; ++j) {
-      for (int i = lower[0]; i < upper[0]; ++i) grid.cells[grid.spec.Index(i, j, k)] = 1;
-    }
-  }
-}
-
-// A table on four legs, a cabinet with shelves, and a pillar of 0.30 x 0.30 x 1.80 m in the paper's
-// workspace, a cube of 3.84 m: the static obstacles and the moving one of Finean et al. (ICAPS
-// 2021). 1.4 % of the cells are filled.
-OccupancyGrid FurnishedRoom(int n) {
-  const double cell_m = kRoom_m / n;
-  OccupancyGrid grid(GridSpec{Eigen::Vector3d::Constant(cell_m / 2), cell_m, {n, n, n}});
-  const double thickness_m = 0.08;
-  AddBox({2.4, 1.0, 0.72}, {3.2, 2.8, 0.80}, grid);
-  for (const double x : {2.4, 3.2 - thickness_m}) {
-    for (const double y : {1.0, 2.8 - thickness_m}) {
-      AddBox({x, y, 0}, {x + thickness_m, y + thickness_m, 0.72}, grid);
-    }
-  }
-  AddBox({0.32, 1.32, 0}, {0.40, 2.52, 2.0}, grid);  // Its back.
-  for (const double y : {1.32, 2.52 - thickness_m}) {
-    AddBox({0.32, y, 0}, {0.92, y + thickness_m, 2.0}, grid);
-  }
-  for (const double z : {0.0, 0.64, 1.28, 2.0 - thickness_m}) {
-    AddBox({0.32, 1.32, z}, {0.92, 2.52, z + thickness_m}, grid);
-  }
-  AddBox({1.76, 0.40, 0}, {2.06, 0.70, 1.80}, grid);
-  return grid;
-}
 
 // For as long as it lives, Highway picks none but these instruction sets.
 class OnlyTargets {
@@ -70,7 +33,7 @@ class OnlyTargets {
 };
 
 void Transform(benchmark::State& state, DistanceConvention convention, double max_distance_cells) {
-  const OccupancyGrid grid = FurnishedRoom(static_cast<int>(state.range(0)));
+  const OccupancyGrid grid = FurnishedRoom(static_cast<int>(state.range(0)), kPillar);
   const std::size_t size = grid.cells.size();
   const auto distance_m = hwy::AllocateAligned<float>(size);
   DistanceTransformOptions options{.convention = convention};

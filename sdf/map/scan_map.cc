@@ -6,7 +6,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "sdf/map/occupancy_from_scan.h"
 
 namespace sidestep {
 namespace {
@@ -84,31 +83,34 @@ void VisitCellsOnTheWay(const GridSpec& grid, const Eigen::Vector3d& start,
   }
 }
 
-ScanMap::ScanMap(const GridSpec& grid_W, UnseenSpace unseen) : unseen_(unseen) {
-  CheckGridSpec(grid_W);
-  last_ = OccupancyGrid(grid_W);
-  if (unseen == UnseenSpace::kFilled) std::fill(last_.cells.begin(), last_.cells.end(), 1);
+ScanMap::ScanMap(const GridSpec& grid_W, UnseenSpace unseen)
+    : unseen_(unseen), rasteriser_(grid_W), map_(grid_W) {
+  FillUnseen();
 }
 
-OccupancyGrid ScanMap::Update(const Scan& scan) {
-  if (scan.kind == ScanKind::kSolid) return FillFromScan(scan, last_.spec);
-  OccupancyGrid map = last_;
+void ScanMap::FillUnseen() {
+  const bool is_filled = unseen_ == UnseenSpace::kFilled;
+  std::fill(map_.cells.begin(), map_.cells.end(), std::uint8_t{is_filled});
+}
+
+const OccupancyGrid& ScanMap::Update(const Scan& scan) {
+  const OccupancyGrid& hits = rasteriser_.Fill(scan);
+  if (scan.kind == ScanKind::kSolid) return hits;
+  if (unseen_ != UnseenSpace::kRemembered) FillUnseen();
   std::vector<std::size_t> seen_free;
   for (const Eigen::Matrix3Xd* const ends : {&scan.p_CP, &scan.p_CFree}) {
     for (Eigen::Index n = 0; n < ends->cols(); ++n) {
       const Eigen::Vector3d p_WEnd = scan.X_WC * ends->col(n);
       if (!p_WEnd.allFinite()) continue;
       seen_free.clear();
-      VisitCellsOnTheWay(map.spec, scan.X_WC.translation(), p_WEnd, &seen_free);
-      for (const std::size_t cell : seen_free) map.cells[cell] = 0;
+      VisitCellsOnTheWay(map_.spec, scan.X_WC.translation(), p_WEnd, &seen_free);
+      for (const std::size_t cell : seen_free) map_.cells[cell] = 0;
     }
   }
-  const OccupancyGrid hits = FillFromScan(scan, map.spec);
   for (std::size_t cell = 0; cell < hits.cells.size(); ++cell) {
-    if (hits.cells[cell] != 0) map.cells[cell] = 1;
+    if (hits.cells[cell] != 0) map_.cells[cell] = 1;
   }
-  if (unseen_ == UnseenSpace::kRemembered) last_ = map;
-  return map;
+  return map_;
 }
 
 void FillObjects(const std::vector<ObjectObservation>& objects, OccupancyGrid* occupancy) {

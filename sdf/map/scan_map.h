@@ -5,6 +5,7 @@
 
 #include "core/grid.h"
 #include "core/observations.h"
+#include "sdf/map/occupancy_from_scan.h"
 
 namespace sidestep {
 
@@ -28,12 +29,16 @@ class ScanMap {
   /// @throws std::invalid_argument for a bad grid.
   ScanMap(const GridSpec& grid_W, UnseenSpace unseen);
 
-  /// What is filled after this scan, the named objects of the scan left out.
-  OccupancyGrid Update(const Scan& scan);
+  /// What is filled after this scan, the named objects of the scan left out. Valid until the next
+  /// call.
+  const OccupancyGrid& Update(const Scan& scan);
 
  private:
+  void FillUnseen();  // the map as it is where nobody looked
+
   UnseenSpace unseen_;
-  OccupancyGrid last_;  // after the last scan, or as it is where nobody looked
+  ScanRasteriser rasteriser_;
+  OccupancyGrid map_;  // after the last scan of surfaces
 };
 
 /// The cells that a straight line passes through on its way from `start` to `end`, the end's own

@@ -40,12 +40,4 @@ std::vector<int> Background::ReleaseVanished(const OccupancyGrid& occupancy) {
   return released;
 }
 
-OccupancyGrid Background::Foreground(const OccupancyGrid& occupancy) const {
-  OccupancyGrid foreground = occupancy;
-  for (std::size_t i = 0; i < is_background_.size(); ++i) {
-    if (is_background_[i] != 0) foreground.cells[i] = 0;
-  }
-  return foreground;
-}
-
 }  // namespace sidestep

@@ -26,8 +26,8 @@ class Background {
   /// released, so that it is in the foreground as a whole. Returns those owners, ascending.
   std::vector<int> ReleaseVanished(const OccupancyGrid& occupancy);
 
-  /// What is filled and not background.
-  OccupancyGrid Foreground(const OccupancyGrid& occupancy) const;
+  /// 1 for each cell that is background, 0 for the others, in the order of GridSpec::Index.
+  const std::vector<std::uint8_t>& is_background() const { return is_background_; }
 
  private:
   struct Owned {

@@ -54,7 +54,7 @@ TrackerTimes ObjectTracker::Update(const OccupancyGrid& occupancy, EpisodeTime t
   Stopwatch stopwatch;
 
   ReopenVanished(occupancy, t);
-  const std::vector<Component> components = FindComponents(background_.Foreground(occupancy));
+  const std::vector<Component> components = FindComponents(occupancy, background_.is_background());
   times.segment_s = stopwatch.Lap();
 
   for (auto& [id, track] : tracks_) {

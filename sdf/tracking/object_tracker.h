@@ -41,7 +41,7 @@ inline constexpr const char* kFound = "found";
 inline constexpr const char* kLost = "lost";
 }  // namespace track_event
 
-/// What one Update took [s, wall clock], for the report only.
+/// CPU seconds that one Update took, for the report only.
 struct TrackerTimes {
   double segment_s = 0, track_s = 0;
 };

@@ -1,11 +1,18 @@
 #include "sdf/tracking/segmentation.h"
 
 #include <algorithm>
-#include <cstdint>
+#include <stdexcept>
 #include <utility>
 
 namespace sidestep {
 namespace {
+
+// Neighbouring filled cells of one row of the grid, first <= i <= last.
+struct Run {
+  int first, last;
+  std::size_t row;
+  std::size_t parent;  // a run of the same component, never a later one
+};
 
 std::array<int, 3> CellAt(const GridSpec& spec, std::size_t index) {
   const std::size_t nx = static_cast<std::size_t>(spec.size[0]);
@@ -14,61 +21,152 @@ std::array<int, 3> CellAt(const GridSpec& spec, std::size_t index) {
           static_cast<int>(index / (nx * ny))};
 }
 
-// Takes the component around `seed` out of `pending`.
-std::vector<std::size_t> Flood(const GridSpec& spec, std::size_t seed,
-                               std::vector<std::uint8_t>& pending) {
-  std::vector<std::size_t> cells = {seed};
-  pending[seed] = 0;
-  for (std::size_t next = 0; next < cells.size(); ++next) {
-    const auto [i, j, k] = CellAt(spec, cells[next]);
-    for (int c = std::max(k - 1, 0); c <= std::min(k + 1, spec.size[2] - 1); ++c) {
-      for (int b = std::max(j - 1, 0); b <= std::min(j + 1, spec.size[1] - 1); ++b) {
-        for (int a = std::max(i - 1, 0); a <= std::min(i + 1, spec.size[0] - 1); ++a) {
-          const std::size_t neighbour = spec.Index(a, b, c);
-          if (pending[neighbour] == 0) continue;
-          pending[neighbour] = 0;
-          cells.push_back(neighbour);
-        }
-      }
-    }
+bool AllFree(const std::uint8_t* filled, const std::uint8_t* left_out, std::size_t count) {
+  std::uint8_t any = 0;
+  for (std::size_t n = 0; n < count; ++n) {
+    any |= static_cast<std::uint8_t>(filled[n] & ~left_out[n]);
   }
-  std::sort(cells.begin(), cells.end());
-  return cells;
+  return any == 0;
 }
 
-Component Describe(const GridSpec& spec, std::vector<std::size_t> cells) {
-  Component component;
-  component.first = component.last = CellAt(spec, cells.front());
-  std::array<std::int64_t, 3> sum = {0, 0, 0};  // of indices: exact in any order
-  for (const std::size_t index : cells) {
-    const std::array<int, 3> cell = CellAt(spec, index);
-    for (std::size_t a = 0; a < 3; ++a) {
-      sum[a] += cell[a];
-      component.first[a] = std::min(component.first[a], cell[a]);
-      component.last[a] = std::max(component.last[a], cell[a]);
+std::vector<Run> FindRuns(const OccupancyGrid& occupancy, std::span<const std::uint8_t> left_out) {
+  constexpr std::size_t kChunk = 256;  // Most of a grid is free: skip that in large steps.
+  const std::span<const std::uint8_t> filled = occupancy.cells;
+  const std::size_t nx = static_cast<std::size_t>(occupancy.spec.size[0]);
+  std::vector<Run> runs;
+  std::size_t next = 0;  // the cell that would continue the last run, 0 if there is none
+  for (std::size_t begin = 0; begin < filled.size(); begin += kChunk) {
+    const std::size_t end = std::min(begin + kChunk, filled.size());
+    if (AllFree(&filled[begin], &left_out[begin], end - begin)) continue;
+    for (std::size_t cell = begin; cell < end; ++cell) {
+      if (filled[cell] == 0 || left_out[cell] != 0) continue;
+      if (cell == next && cell != 0) {
+        ++runs.back().last;
+      } else {
+        const int i = static_cast<int>(cell % nx);
+        runs.push_back({i, i, cell / nx, runs.size()});
+      }
+      const bool ends_row = runs.back().last + 1 == occupancy.spec.size[0];
+      next = ends_row ? 0 : cell + 1;
     }
   }
-  const Eigen::Vector3d mean =
-      Eigen::Vector3d(static_cast<double>(sum[0]), static_cast<double>(sum[1]),
-                      static_cast<double>(sum[2])) /
-      static_cast<double>(cells.size());
-  component.centroid_m = spec.first_center_m + spec.cell_m * mean;
-  component.cells = std::move(cells);
-  return component;
+  return runs;
 }
+
+// Where the runs of each row begin, and one entry more for where the last ones end.
+std::vector<std::size_t> FindRowBegins(const std::vector<Run>& runs, std::size_t num_rows) {
+  std::vector<std::size_t> begins(num_rows + 1, runs.size());
+  for (std::size_t r = runs.size(); r-- > 0;) begins[runs[r].row] = r;
+  for (std::size_t row = num_rows; row-- > 0;) begins[row] = std::min(begins[row], begins[row + 1]);
+  return begins;
+}
+
+std::size_t FindRoot(std::vector<Run>& runs, std::size_t r) {
+  while (runs[r].parent != r) r = runs[r].parent = runs[runs[r].parent].parent;
+  return r;
+}
+
+void Join(std::vector<Run>& runs, std::size_t a, std::size_t b) {
+  a = FindRoot(runs, a);
+  b = FindRoot(runs, b);
+  runs[std::max(a, b)].parent = std::min(a, b);
+}
+
+// Joins the runs of two neighbouring rows that touch, corners included.
+void JoinRows(std::vector<Run>& runs, std::size_t a, std::size_t a_end, std::size_t b,
+              std::size_t b_end) {
+  while (a < a_end && b < b_end) {
+    if (runs[a].first <= runs[b].last + 1 && runs[b].first <= runs[a].last + 1) Join(runs, a, b);
+    // Runs of a row are at least a cell apart, so the one that ends first touches nothing further.
+    runs[a].last < runs[b].last ? ++a : ++b;
+  }
+}
+
+void JoinNeighbours(const GridSpec& spec, std::vector<Run>& runs) {
+  const std::size_t ny = static_cast<std::size_t>(spec.size[1]);
+  const std::size_t nz = static_cast<std::size_t>(spec.size[2]);
+  const std::vector<std::size_t> begins = FindRowBegins(runs, ny * nz);
+  for (std::size_t a = 0; a < runs.size();) {
+    const std::size_t row = runs[a].row;
+    const std::size_t a_end = begins[row + 1];
+    const auto join_with = [&](std::size_t other) {
+      JoinRows(runs, a, a_end, begins[other], begins[other + 1]);
+    };
+    const bool has_left = row % ny > 0;
+    const bool has_right = row % ny + 1 < ny;
+    if (has_left) join_with(row - 1);
+    if (row >= ny) {
+      if (has_left) join_with(row - ny - 1);
+      join_with(row - ny);
+      if (has_right) join_with(row - ny + 1);
+    }
+    a = a_end;
+  }
+}
+
+// A component that grows by its runs.
+struct Growing {
+  Component component;
+  std::array<std::int64_t, 3> sum = {0, 0, 0};  // of the cells' indices: exact in any order
+
+  void Add(const Run& run, const GridSpec& spec) {
+    const std::size_t ny = static_cast<std::size_t>(spec.size[1]);
+    const int j = static_cast<int>(run.row % ny);
+    const int k = static_cast<int>(run.row / ny);
+    Component& c = component;
+    if (c.cells.empty()) {
+      c.first = {run.first, j, k};
+      c.last = {run.last, j, k};
+    }
+    c.first = {std::min(c.first[0], run.first), std::min(c.first[1], j), std::min(c.first[2], k)};
+    c.last = {std::max(c.last[0], run.last), std::max(c.last[1], j), std::max(c.last[2], k)};
+    for (int i = run.first; i <= run.last; ++i) {
+      c.cells.push_back(spec.Index(i, j, k));
+      sum[0] += i;
+    }
+    sum[1] += std::int64_t{j} * (run.last - run.first + 1);
+    sum[2] += std::int64_t{k} * (run.last - run.first + 1);
+  }
+
+  Component Finish(const GridSpec& spec) && {
+    const Eigen::Vector3d mean =
+        Eigen::Vector3d(static_cast<double>(sum[0]), static_cast<double>(sum[1]),
+                        static_cast<double>(sum[2])) /
+        static_cast<double>(component.cells.size());
+    component.centroid_m = spec.first_center_m + spec.cell_m * mean;
+    return std::move(component);
+  }
+};
 
 }  // namespace
 
-std::vector<Component> FindComponents(const OccupancyGrid& occupancy) {
+std::vector<Component> FindComponents(const OccupancyGrid& occupancy,
+                                      std::span<const std::uint8_t> left_out) {
+  if (left_out.size() != occupancy.cells.size()) {
+    throw std::invalid_argument("FindComponents: left_out needs one byte a cell");
+  }
+  std::vector<Run> runs = FindRuns(occupancy, left_out);
+  JoinNeighbours(occupancy.spec, runs);
+  std::vector<Growing> growing;
+  std::vector<std::size_t> number(runs.size());  // of each run's component
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const std::size_t root = FindRoot(runs, r);
+    if (root == r) {  // The first run of a component is its root.
+      number[r] = growing.size();
+      growing.emplace_back();
+    }
+    number[r] = number[root];
+    growing[number[r]].Add(runs[r], occupancy.spec);
+  }
   std::vector<Component> components;
-  std::vector<std::uint8_t> pending = occupancy.cells;
-  const auto is_filled = [](std::uint8_t cell) { return cell != 0; };
-  for (auto seed = pending.begin();
-       (seed = std::find_if(seed, pending.end(), is_filled)) != pending.end();) {
-    const std::size_t index = static_cast<std::size_t>(seed - pending.begin());
-    components.push_back(Describe(occupancy.spec, Flood(occupancy.spec, index, pending)));
+  for (Growing& component : growing) {
+    components.push_back(std::move(component).Finish(occupancy.spec));
   }
   return components;
+}
+
+std::vector<Component> FindComponents(const OccupancyGrid& occupancy) {
+  return FindComponents(occupancy, std::vector<std::uint8_t>(occupancy.cells.size(), 0));
 }
 
 OccupancyGrid CutOut(const Component& component, const GridSpec& grid) {

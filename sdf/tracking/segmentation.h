@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/grid.h"
@@ -19,6 +21,13 @@ struct Component {
 
 /// Splits the filled cells into 26-connected components (cells that share a face, an edge or a
 /// corner belong together), in the order of their lowest cell.
+///
+/// It works on runs of filled cells along x, so that a grid costs little more than a look at it.
+///
+/// @param left_out one byte a cell: where it is not 0, the cell counts as free.
+/// @throws std::invalid_argument for a `left_out` of another size.
+std::vector<Component> FindComponents(const OccupancyGrid& occupancy,
+                                      std::span<const std::uint8_t> left_out);
 std::vector<Component> FindComponents(const OccupancyGrid& occupancy);
 
 /// The component alone, in a grid that fits its box, in W.

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstdlib>
 #include <random>
+#include <stdexcept>
 #include <vector>
 
 namespace sidestep {
@@ -44,7 +46,8 @@ std::vector<int> LabelByRelaxation(const OccupancyGrid& grid) {
 
 TEST(Segmentation, EqualsBruteForceOnRandomGrids) {
   std::mt19937 generator(1);
-  const std::array<int, 3> sizes[] = {{9, 8, 7}, {30, 1, 5}, {1, 1, 40}, {6, 6, 6}, {1, 1, 1}};
+  const std::array<int, 3> sizes[] = {{9, 8, 7}, {30, 1, 5}, {1, 1, 40}, {6, 6, 6},
+                                      {1, 1, 1}, {70, 5, 4}, {3, 2, 200}};
   for (const std::array<int, 3>& size : sizes) {
     for (const double share : {0.0, 0.03, 0.08, 0.3, 1.0}) {
       SCOPED_TRACE(testing::Message()
@@ -68,6 +71,41 @@ TEST(Segmentation, EqualsBruteForceOnRandomGrids) {
       EXPECT_EQ(labels, LabelByRelaxation(grid));
     }
   }
+}
+
+TEST(Segmentation, JoinsNothingInAGridOfLonelyCellsAndAllOfACheckerboard) {
+  OccupancyGrid lonely({{0, 0, 0}, 1, {40, 20, 20}});
+  OccupancyGrid checkerboard = lonely;
+  for (int k = 0; k < 20; ++k)
+    for (int j = 0; j < 20; ++j)
+      for (int i = 0; i < 40; ++i) {
+        lonely.cells[lonely.spec.Index(i, j, k)] = i % 2 == 0 && j % 2 == 0 && k % 2 == 0;
+        checkerboard.cells[lonely.spec.Index(i, j, k)] = (i + j + k) % 2 == 0;
+      }
+  EXPECT_EQ(FindComponents(lonely).size(), 20u * 10 * 10);
+  const std::vector<Component> components = FindComponents(checkerboard);
+  ASSERT_EQ(components.size(), 1u);
+  EXPECT_EQ(components[0].cells.size(), 40u * 20 * 20 / 2);
+}
+
+TEST(Segmentation, TakesCellsThatAreLeftOutForFree) {
+  std::mt19937 generator(2);
+  OccupancyGrid grid({{0, 0, 0}, 0.1, {67, 11, 9}});
+  std::vector<std::uint8_t> left_out(grid.cells.size());
+  OccupancyGrid rest = grid;
+  for (std::size_t n = 0; n < grid.cells.size(); ++n) {
+    grid.cells[n] = generator() % 4 == 0;
+    left_out[n] = generator() % 2;
+    rest.cells[n] = grid.cells[n] != 0 && left_out[n] == 0;
+  }
+  const std::vector<Component> components = FindComponents(grid, left_out);
+  const std::vector<Component> expected = FindComponents(rest);
+  ASSERT_EQ(components.size(), expected.size());
+  for (std::size_t c = 0; c < expected.size(); ++c) {
+    EXPECT_EQ(components[c].cells, expected[c].cells);
+  }
+  left_out.pop_back();
+  EXPECT_THROW(FindComponents(grid, left_out), std::invalid_argument);
 }
 
 TEST(Segmentation, DescribesABoxByItsCornersAndItsCentre) {
