@@ -46,9 +46,11 @@ Recording BeginRecording(const Scenario& scenario, const RobotModel& robot,
 // The loop's state: what has happened so far and what is due.
 class Loop {
  public:
-  Loop(const Scenario& scenario, const RobotModel& robot, EpisodeWorld& world)
+  Loop(const Scenario& scenario, const RobotModel& robot, EpisodeWorld& world,
+       const FieldObserver& observe_field)
       : scenario_(scenario),
         world_(world),
+        observe_field_(observe_field),
         planner_(MakePlanner(scenario.planner, robot, MakePlannerSettings(scenario))),
         model_(MakeWorldModel(MakeWorldModelOptions(scenario, robot, world))),
         replanner_(*planner_, *model_, {scenario.horizon_s, scenario.step_s, scenario.q_goal}),
@@ -141,6 +143,8 @@ class Loop {
     if (cycle.plan) pending_.push_back({*cycle.plan, t_s + latency_s});
     result_.recording.cycles.push_back(std::move(cycle.record));
     KeepTimes(cycle);
+    // No scan has come in since, so this is the same field.
+    if (observe_field_) observe_field_(EpisodeTime(t_s), model_->MakeField(), world_.truth);
   }
 
   void KeepTimes(const Replanner::Cycle& cycle) {
@@ -175,6 +179,7 @@ class Loop {
 
   const Scenario& scenario_;
   EpisodeWorld& world_;
+  const FieldObserver& observe_field_;
   std::unique_ptr<Planner> planner_;
   std::unique_ptr<WorldModel> model_;
   Replanner replanner_;
@@ -226,10 +231,10 @@ std::string ToString(Outcome outcome) {
 }
 
 EpisodeResult RunEpisode(const Scenario& scenario, const RobotModel& robot,
-                         const WorldFactory& make_world) {
+                         const WorldFactory& make_world, const FieldObserver& observe_field) {
   const auto begin = std::chrono::steady_clock::now();
   EpisodeWorld world = make_world(scenario, robot);
-  EpisodeResult result = Loop(scenario, robot, world).Run();
+  EpisodeResult result = Loop(scenario, robot, world, observe_field).Run();
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;
 }

@@ -12,6 +12,7 @@
 #include "robot/sensor.h"
 #include "robot/world_truth.h"
 #include "scenarios/scenario.h"
+#include "sdf/distance_field.h"
 #include "sdf/world_model.h"
 
 namespace sidestep {
@@ -32,6 +33,11 @@ using WorldFactory = std::function<EpisodeWorld(const Scenario&, const RobotMode
 /// How the scenario's model of the world is made, fed from `world`, which must outlive it.
 WorldModelOptions MakeWorldModelOptions(const Scenario& scenario, const RobotModel& robot,
                                         const EpisodeWorld& world);
+
+/// Is shown the field of each planning cycle as the planner saw it, made at time `t`, and the
+/// truth, which is null on hardware. Only wall-clock figures may depend on it.
+using FieldObserver = std::function<void(EpisodeTime t, std::shared_ptr<const DistanceField> field,
+                                         const WorldTruth* truth)>;
 
 enum class Outcome {
   kGoal,          ///< reached the goal and touched nothing
@@ -59,6 +65,6 @@ struct EpisodeResult {
 /// @param scenario with its task resolved (bench/resolve.h).
 /// @throws std::invalid_argument for words of the scenario that no module knows.
 EpisodeResult RunEpisode(const Scenario& scenario, const RobotModel& robot,
-                         const WorldFactory& make_world);
+                         const WorldFactory& make_world, const FieldObserver& observe_field = {});
 
 }  // namespace sidestep

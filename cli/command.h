@@ -15,6 +15,7 @@ struct CommandLine {
 void AddRunCommand(CommandLine& line);
 void AddListCommand(CommandLine& line);
 void AddCompareCommand(CommandLine& line);
+void AddAuditCommand(CommandLine& line);
 void AddRenderCommand(CommandLine& line);
 void AddReproduceCommand(CommandLine& line);
 void AddStudyCommand(CommandLine& line);

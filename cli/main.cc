@@ -48,6 +48,7 @@ int Run(int argc, char** argv) {
   sidestep::AddRenderCommand(line);
   sidestep::AddReproduceCommand(line);
   sidestep::AddStudyCommand(line);
+  sidestep::AddAuditCommand(line);
   sidestep::AddListCommand(line);
   sidestep::AddDoctorCommand(line);
   sidestep::AddFieldCommand(line);

@@ -1,50 +1,25 @@
 #include "sdf/composite_field.h"
 
 #include <algorithm>
+#include <limits>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
 namespace sidestep {
 namespace {
 
-// An object's field, placed for one time.
-struct PlacedField {
-  PlacedField(const MovingField& object, EpisodeTime t) : field_O(*object.field_O) {
-    const Pose X_WO = object.X_WO(t);
-    R_WO = X_WO.rotation().toRotationMatrix();
-    p_WO = X_WO.translation();
-    if (object.growth_m) growth_m = std::clamp(object.growth_m(t), 0.0, object.max_growth_m);
-  }
-
-  // Lowers the given answer at Q to that of this object, if that is nearer.
-  template <class Gradient>
-  void Lower(const Eigen::Vector3d& p_WQ, double& distance_m, Gradient&& gradient_W) const {
-    const GridSample sample = field_O.Sample(R_WO.transpose() * (p_WQ - p_WO));
-    const double object_m = sample.distance_m - growth_m;
-    if (sample.in_grid && object_m < distance_m) {
-      distance_m = object_m;
-      gradient_W = R_WO * sample.gradient;
-    }
-  }
-
-  const SdfGrid& field_O;
-  Eigen::Matrix3d R_WO;
-  Eigen::Vector3d p_WO;
-  double growth_m = 0;
-};
-
-bool ReachesClampAtItsBorder(const SdfGrid& field, double clamp_m) {
+double LowestAtItsBorder(const SdfGrid& field) {
+  double lowest_m = std::numeric_limits<double>::infinity();
   const auto [nx, ny, nz] = field.spec().size;
   for (int k = 0; k < nz; ++k) {
     for (int j = 0; j < ny; ++j) {
       const bool whole_row = j == 0 || j == ny - 1 || k == 0 || k == nz - 1;
       const int step = whole_row || nx == 1 ? 1 : nx - 1;
-      for (int i = 0; i < nx; i += step) {
-        if (field.At(i, j, k) < clamp_m) return false;
-      }
+      for (int i = 0; i < nx; i += step) lowest_m = std::min(lowest_m, double{field.At(i, j, k)});
     }
   }
-  return true;
+  return lowest_m;
 }
 
 }  // namespace
@@ -64,45 +39,47 @@ CompositeField::CompositeField(std::shared_ptr<const SdfGrid> static_W,
     if (!(object.max_growth_m >= 0)) {
       throw std::invalid_argument("CompositeField: max_growth_m must be >= 0");
     }
-    if (!ReachesClampAtItsBorder(*object.field_O, max_distance_m_ + object.max_growth_m)) {
+  }
+  // Objects may share a field: each is looked at once.
+  struct Seen {
+    FieldBound bound;
+    double border_m;
+  };
+  std::map<const SdfGrid*, Seen> seen;
+  const bool many = objects_.size() >= PlacedComposite::kMany;
+  for (const MovingField& object : objects_) {
+    const SdfGrid& field = *object.field_O;
+    if (!seen.contains(&field)) {
+      seen[&field] = {many ? TightBound(field) : DomainBound(field), LowestAtItsBorder(field)};
+    }
+    if (!(seen[&field].border_m >= max_distance_m_ + object.max_growth_m)) {
       throw std::invalid_argument("CompositeField: an object's grid has too little padding");
     }
+    bounds_.push_back(seen[&field].bound);
   }
 }
 
-DistanceSample CompositeField::SampleStatic(const Eigen::Vector3d& p_WQ) const {
-  const GridSample sample = static_W_->Sample(p_WQ);
-  if (!sample.in_grid || sample.distance_m >= max_distance_m_) {
-    return {max_distance_m_, Eigen::Vector3d::Zero(), sample.in_grid};
+PlacedComposite CompositeField::At(EpisodeTime t) const {
+  std::vector<PlacedObject> placed;
+  placed.reserve(objects_.size());
+  for (std::size_t n = 0; n < objects_.size(); ++n) {
+    const MovingField& object = objects_[n];
+    PlacedObject& at_t = placed.emplace_back();
+    at_t.field_O = object.field_O.get();
+    at_t.bound = bounds_[n];
+    at_t.X_WO = object.X_WO(t);
+    if (object.growth_m) at_t.growth_m = std::clamp(object.growth_m(t), 0.0, object.max_growth_m);
   }
-  return {sample.distance_m, sample.gradient, true};
+  return {*static_W_, placed, max_distance_m_};
 }
 
 DistanceSample CompositeField::Sample(const Eigen::Vector3d& p_WQ, EpisodeTime t) const {
-  DistanceSample sample = SampleStatic(p_WQ);
-  for (const MovingField& object : objects_) {
-    PlacedField(object, t).Lower(p_WQ, sample.distance_m, sample.gradient_W);
-  }
-  return sample;
+  return At(t).Sample(p_WQ);
 }
 
 void CompositeField::SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime t,
                                 DistanceSamples& samples) const {
-  samples.distance_m.resize(p_WQ.cols());
-  samples.gradient_W.resize(3, p_WQ.cols());
-  samples.num_outside = 0;
-  for (Eigen::Index s = 0; s < p_WQ.cols(); ++s) {
-    const DistanceSample sample = SampleStatic(p_WQ.col(s));
-    samples.distance_m(s) = sample.distance_m;
-    samples.gradient_W.col(s) = sample.gradient_W;
-    samples.num_outside += sample.in_grid ? 0 : 1;
-  }
-  for (const MovingField& object : objects_) {
-    const PlacedField placed(object, t);
-    for (Eigen::Index s = 0; s < p_WQ.cols(); ++s) {
-      placed.Lower(p_WQ.col(s), samples.distance_m(s), samples.gradient_W.col(s));
-    }
-  }
+  At(t).SampleMany(p_WQ, samples);
 }
 
 }  // namespace sidestep

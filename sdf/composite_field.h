@@ -8,6 +8,7 @@
 #include "core/time.h"
 #include "sdf/distance_field.h"
 #include "sdf/map/sdf_grid.h"
+#include "sdf/placed_composite.h"
 
 namespace sidestep {
 
@@ -49,11 +50,14 @@ class CompositeField final : public DistanceField {
                   DistanceSamples& samples) const override;
   double max_distance_m() const override { return max_distance_m_; }
 
- private:
-  DistanceSample SampleStatic(const Eigen::Vector3d& p_WQ) const;
+  /// The same at one time, for those who have many questions about it: asks each object for its
+  /// pose once. This field must outlive it.
+  PlacedComposite At(EpisodeTime t) const;
 
+ private:
   std::shared_ptr<const SdfGrid> static_W_;
   std::vector<MovingField> objects_;
+  std::vector<FieldBound> bounds_;  // of the objects' fields
   double max_distance_m_;
 };
 

@@ -75,8 +75,8 @@ class MappedWorld : public WorldModel {
 
   const WorldModelOptions options_;
   ScanMap scan_map_;
-  OccupancyGrid with_objects_;  // what a scan and its named objects fill
-  const OccupancyGrid* occupancy_ = nullptr;  // by the latest scan
+  OccupancyGrid with_objects_;                       // what a scan and its named objects fill
+  const OccupancyGrid* occupancy_ = &with_objects_;  // by the latest scan
   StaticMap static_map_;
   std::optional<EpisodeTime> t_scan_;  // of the latest scan
   WorldModelTimes times_;
@@ -138,9 +138,7 @@ class PredictedWorld final : public MappedWorld {
     return options.growth_sigmas > 0 ? options.growth_limit_m : 0;
   }
 
-  void LearnObjects(const Scan& scan) override {
-    named_objects_.Update(scan.objects, scan.t);
-  }
+  void LearnObjects(const Scan& scan) override { named_objects_.Update(scan.objects, scan.t); }
 
   void Learn(const OccupancyGrid& occupancy, EpisodeTime t) override {
     const TrackerTimes times = tracker_.Update(occupancy, t);

@@ -215,7 +215,7 @@ const std::vector<ModuleRule>& ModuleRules() {
        {"franka/", "librealsense2/", "apriltag/", "opencv2/"}},
       {"bench",
        {"core", "robot", "sdf", "planner", "control", "scenarios"},
-       {"nlohmann/", "sqlite3.h", "benchmark/", "hwy/"}},
+       {"nlohmann/", "sqlite3.h", "benchmark/", "hwy/", "itk"}},
       {"render",
        {"core", "robot", "scenarios", "sim"},
        {"mujoco/", "GL/", "libavcodec/", "libavformat/", "libavutil/", "libswscale/"}},

@@ -177,7 +177,7 @@ std::vector<std::int32_t> ComputeSquaredDistance(const OccupancyGrid& occupancy,
 
 SdfGrid ComputeSignedDistance(const OccupancyGrid& occupancy, DistanceConvention convention) {
   const std::vector<std::int32_t> squares = ComputeSquaredDistance(occupancy, convention);
-  std::vector<float> distance_m(squares.size());
+  AlignedVector<float> distance_m(squares.size());
   const double half_cell_m = occupancy.spec.cell_m / 2;
   for (std::size_t i = 0; i < squares.size(); ++i) {
     // The root is rounded to float before it is scaled, as the authors' code does: with kBwdist the

@@ -247,7 +247,7 @@ void FastDistanceTransform::Compute(const OccupancyGrid& occupancy,
 
 SdfGrid FastDistanceTransform::Compute(const OccupancyGrid& occupancy,
                                        const DistanceTransformOptions& options) {
-  std::vector<float> distance_m(occupancy.cells.size());
+  AlignedVector<float> distance_m(occupancy.cells.size());
   Compute(occupancy, options, distance_m);
   return SdfGrid(occupancy.spec, std::move(distance_m));
 }

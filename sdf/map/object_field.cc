@@ -4,7 +4,6 @@
 #include <cmath>
 #include <stdexcept>
 #include <utility>
-#include <vector>
 
 #include "sdf/map/fast_distance_transform.h"
 
@@ -53,7 +52,7 @@ SdfGrid MakeShapeField(const Shape& shape, double cell_m, double margin_m) {
     spec.size[static_cast<std::size_t>(a)] = 2 * half + 1;
     spec.first_center_m(a) = -half * cell_m;
   }
-  std::vector<float> distance_m;
+  AlignedVector<float> distance_m;
   distance_m.reserve(spec.num_cells());
   for (int k = 0; k < spec.size[2]; ++k) {
     for (int j = 0; j < spec.size[1]; ++j) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <random>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
@@ -327,6 +328,28 @@ TEST(DenseComposite, RoundsAnObjectToTheNearestCell) {
   };
   EXPECT_EQ(composed(centre + Eigen::Vector3d(0.019, -0.019, 0)), composed(centre));
   EXPECT_NE(composed(centre + Eigen::Vector3d(0.021, 0, 0)), composed(centre));
+}
+
+TEST(DenseSteps, AreTheDenseCompositesOfTheirTimesInAnyOrder) {
+  const auto furniture = FieldOf(Furniture());
+  const auto pillar = PillarField();
+  const auto moving = [&](const Eigen::Vector3d& p_WStart, const Eigen::Vector3d& v_WO) {
+    return MovingField{
+        pillar, [=](EpisodeTime t) { return Pose::Translation(p_WStart + t.seconds() * v_WO); }};
+  };
+  // Two that cross, and one that comes and goes far beyond the grid.
+  const std::vector<MovingField> objects = {moving({-0.5, 0, 0}, {0.4, 0.1, 0}),
+                                            moving({0.5, 0, 0}, {-0.4, 0, 0.1}),
+                                            moving({0, -40, 0}, {0, 20, 0})};
+  DenseSteps steps(furniture, objects);
+  for (const double t_s : {0.0, 0.1, 1.0, 1.0, 2.0, 3.5, 1.1, 1e7, 0.0}) {
+    const std::span<const float> step = steps.At(EpisodeTime(t_s));
+    const SdfGrid expected = ComposeDense(*furniture, objects, EpisodeTime(t_s));
+    EXPECT_TRUE(std::equal(step.begin(), step.end(), expected.distance_m().begin(),
+                           expected.distance_m().end()))
+        << t_s << " s";
+  }
+  EXPECT_THROW(DenseSteps(nullptr, objects), std::invalid_argument);
 }
 
 TEST(DenseComposite, RefusesObjectsItCannotCopyCellByCell) {

@@ -12,12 +12,14 @@
 #include <limits>
 #include <new>
 #include <random>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "sdf/map/fast_distance_transform_envelope.h"
+#include "tests/sdf/only_target.h"
 
 namespace {
 std::atomic<int> num_allocations = 0;
@@ -165,7 +167,8 @@ std::vector<float> BruteForce(const OccupancyGrid& grid, DistanceConvention conv
 // stands in for it (distance_transform_test.cc).
 std::vector<float> Truth(const OccupancyGrid& grid, DistanceConvention convention) {
   if (grid.cells.size() <= 2500) return BruteForce(grid, convention);
-  return ComputeSignedDistance(grid, convention).distance_m();
+  const SdfGrid field = ComputeSignedDistance(grid, convention);
+  return {field.distance_m().begin(), field.distance_m().end()};
 }
 
 std::vector<float> Compute(FastDistanceTransform& transform, const OccupancyGrid& grid,
@@ -177,8 +180,7 @@ std::vector<float> Compute(FastDistanceTransform& transform, const OccupancyGrid
 }
 
 // Where the first difference is; both may be long.
-::testing::AssertionResult IsSame(const std::vector<float>& actual,
-                                  const std::vector<float>& expected) {
+::testing::AssertionResult IsSame(std::span<const float> actual, std::span<const float> expected) {
   for (std::size_t i = 0; i < expected.size(); ++i) {
     if (!(actual[i] == expected[i])) {
       return ::testing::AssertionFailure()
@@ -191,15 +193,8 @@ std::vector<float> Compute(FastDistanceTransform& transform, const OccupancyGrid
 // --- Every instruction set -----------------------------------------------------------------------
 
 class FastDistanceTransformOn : public ::testing::TestWithParam<std::int64_t> {
- protected:
-  void SetUp() override { Use(GetParam()); }
-  void TearDown() override { Use(0); }
-
  private:
-  static void Use(std::int64_t targets) {
-    hwy::SetSupportedTargetsForTest(targets);
-    hwy::GetChosenTarget().DeInit();
-  }
+  const OnlyTarget target_{GetParam()};
 };
 
 TEST_P(FastDistanceTransformOn, IsExactForAllGridsConventionsLanesAndLimits) {
@@ -238,7 +233,7 @@ TEST_P(FastDistanceTransformOn, WidensItsLanesWhereSquaresOverflow) {
 TEST_P(FastDistanceTransformOn, WritesGridsPastTheCachesToTheirLastCell) {
   // Over 16 MB, rows not a multiple of a cache line, and an output that is not aligned to one.
   const OccupancyGrid grid = Random({163, 162, 165}, 0.001);
-  const std::vector<float> truth =
+  const AlignedVector<float> truth =
       ComputeSignedDistance(grid, DistanceConvention::kSurface).distance_m();
   FastDistanceTransform transform;
   for (const std::size_t offset : {0, 1, 13}) {
@@ -262,7 +257,7 @@ INSTANTIATE_TEST_SUITE_P(Target, FastDistanceTransformOn,
 
 TEST(FastDistanceTransform, IsTheSameOnAnyNumberOfThreads) {
   const OccupancyGrid grid = Random({70, 45, 50}, 0.003);
-  const std::vector<float> truth =
+  const AlignedVector<float> truth =
       ComputeSignedDistance(grid, DistanceConvention::kSurface).distance_m();
   FastDistanceTransform transform;
   for (const int threads : {2, 1, 3}) {

@@ -20,7 +20,7 @@ GridSpec Spec() { return {{-1, -1, -1}, 0.04, {96, 7, 5}}; }
 SdfGrid RandomGrid(const GridSpec& spec) {
   std::mt19937 generator(3);
   std::uniform_real_distribution<float> uniform(-0.5F, 0.5F);
-  std::vector<float> values(spec.num_cells());
+  AlignedVector<float> values(spec.num_cells());
   for (float& value : values) value = uniform(generator);
   return SdfGrid(spec, values);
 }
@@ -49,7 +49,7 @@ TEST(SdfGrid, ReproducesATrilinearFunction) {
     return 0.3 + p.x() - 2 * p.y() + 0.5 * p.x() * p.y() * p.z() - p.y() * p.z();
   };
   const GridSpec spec = Spec();
-  std::vector<float> values;
+  AlignedVector<float> values;
   for (int k = 0; k < 5; ++k)
     for (int j = 0; j < 7; ++j)
       for (int i = 0; i < 96; ++i) values.push_back(static_cast<float>(f(spec.Center(i, j, k))));
@@ -121,13 +121,13 @@ TEST(SdfGrid, OfOneCellIsOnePoint) {
 }
 
 TEST(SdfGrid, RefusesAnotherNumberOfValues) {
-  EXPECT_THROW(SdfGrid(Spec(), std::vector<float>(3)), std::invalid_argument);
+  EXPECT_THROW(SdfGrid(Spec(), AlignedVector<float>(3, 0.0F)), std::invalid_argument);
   EXPECT_THROW(SdfGrid({{0, 0, 0}, 0, {1, 1, 1}}, {0.0F}), std::invalid_argument);
 }
 
 GridField SlopeField(double max_distance_m) {  // distance = x + 1 from x = -1 to 2.8
   const GridSpec spec = Spec();
-  std::vector<float> values;
+  AlignedVector<float> values;
   for (int row = 0; row < 7 * 5; ++row)
     for (int i = 0; i < 96; ++i) values.push_back(0.04F * static_cast<float>(i));
   return GridField(std::make_shared<SdfGrid>(spec, values), max_distance_m);

@@ -251,9 +251,10 @@ TEST(Simulation, SaysWhatOfTheScenarioDoesNotFit) {
   scenario.sensor.name = "nose";
   scenario.sensor.line = 12;
   EXPECT_THAT([&] { Simulation(scenario, TwoLink(scenario), kTestModels); },
-              testing::ThrowsMessage<InputError>(testing::StrEq(
-                  "two_link.yaml:12: sensor.name: is not a known sensor (known: depth_camera, occupancy, tags): "
-                  "'nose'")));
+              testing::ThrowsMessage<InputError>(
+                  testing::StrEq("two_link.yaml:12: sensor.name: is not a known sensor (known: "
+                                 "depth_camera, occupancy, tags): "
+                                 "'nose'")));
 }
 
 }  // namespace

@@ -1,0 +1,160 @@
+#include "bench/field_audit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <stdexcept>
+#include <utility>
+
+#include "bench/statistics.h"
+#include "core/shape.h"
+
+namespace sidestep {
+namespace {
+
+constexpr double kNearCells = 1.75;
+
+double AngleDeg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / M_PI;
+}
+
+}  // namespace
+
+TrueWorld::TrueWorld(const Scenario& scenario, const std::vector<ObjectObservation>& obstacles) {
+  for (const StaticBox& box : scenario.static_boxes) {
+    solids_.push_back({Box{box.size_m}, box.X_WO.Inverse()});
+  }
+  for (const ObjectObservation& obstacle : obstacles) {
+    solids_.push_back({obstacle.shape, obstacle.X_WO.Inverse()});
+  }
+}
+
+double TrueWorld::Distance(const Eigen::Vector3d& p_WQ) const {
+  double least_m = std::numeric_limits<double>::infinity();
+  for (const Solid& solid : solids_) {
+    least_m = std::min(least_m, SignedDistance(solid.shape, solid.X_OW * p_WQ));
+  }
+  return least_m;
+}
+
+Eigen::Vector3d TrueWorld::Gradient(const Eigen::Vector3d& p_WQ) const {
+  constexpr double kStep_m = 1e-5;
+  Eigen::Vector3d gradient;
+  for (int a = 0; a < 3; ++a) {
+    const Eigen::Vector3d step = kStep_m * Eigen::Vector3d::Unit(a);
+    gradient(a) = (Distance(p_WQ + step) - Distance(p_WQ - step)) / (2 * kStep_m);
+  }
+  return gradient;
+}
+
+std::string ToString(AuditZone zone) {
+  switch (zone) {
+    case AuditZone::kInside:
+      return "inside";
+    case AuditZone::kNear:
+      return "near";
+    case AuditZone::kMargin:
+      return "margin";
+    case AuditZone::kEdge:
+      return "edge";
+    case AuditZone::kBeyond:
+      return "beyond";
+  }
+  return "";
+}
+
+FieldAudit::FieldAudit(const Scenario& scenario, std::vector<double> ahead_s, int num_points)
+    : scenario_(scenario), ahead_s_(std::move(ahead_s)), p_WQ_(3, num_points) {
+  const GridSpec& grid = scenario_.grid;
+  CheckGridSpec(grid);
+  const bool in_order = std::all_of(ahead_s_.begin(), ahead_s_.end(),
+                                    [](double s) { return std::isfinite(s) && s >= 0; });
+  if (ahead_s_.empty() || !in_order || num_points < 1) {
+    throw std::invalid_argument("field audit: needs times >= 0 ahead, and points");
+  }
+  std::mt19937_64 random(scenario_.seed);
+  for (int s = 0; s < num_points; ++s) {
+    for (int a = 0; a < 3; ++a) {
+      const double last = grid.size[static_cast<std::size_t>(a)] - 1;
+      p_WQ_(a, s) = grid.first_center_m(a) +
+                    grid.cell_m * std::uniform_real_distribution<double>(0, last)(random);
+    }
+  }
+  worst_.field_m = worst_.truth_m = 0;
+}
+
+AuditZone FieldAudit::ZoneOf(double truth_m, double clamp_m) const {
+  const double cell_m = scenario_.grid.cell_m;
+  if (truth_m < 0) return AuditZone::kInside;
+  if (truth_m < kNearCells * cell_m) return AuditZone::kNear;
+  if (truth_m <= clamp_m - cell_m) return AuditZone::kMargin;
+  return truth_m <= clamp_m ? AuditZone::kEdge : AuditZone::kBeyond;
+}
+
+void FieldAudit::Look(EpisodeTime t, std::shared_ptr<const DistanceField> field,
+                      const WorldTruth& truth) {
+  const double clamp_m = field->max_distance_m();
+  DistanceSamples samples;
+  for (std::size_t n = 0; n < ahead_s_.size(); ++n) {
+    const EpisodeTime asked = t + HorizonOffset(ahead_s_[n]);
+    const std::vector<ObjectObservation> obstacles = truth.ObstaclesAt(asked);
+    const TrueWorld world(scenario_, obstacles);
+    field->SampleMany(p_WQ_, asked, samples);
+    for (Eigen::Index s = 0; s < p_WQ_.cols(); ++s) {
+      const double truth_m = world.Distance(p_WQ_.col(s));
+      const AuditZone zone = ZoneOf(truth_m, clamp_m);
+      const double error_m = std::abs(samples.distance_m(s) - std::min(truth_m, clamp_m));
+      Errors& errors = errors_[{n, zone}];
+      errors.distance_m.push_back(error_m);
+      const Eigen::Vector3d gradient_W = samples.gradient_W.col(s);
+      if ((zone == AuditZone::kNear || zone == AuditZone::kMargin) && !gradient_W.isZero(0)) {
+        errors.gradient_deg.push_back(AngleDeg(gradient_W, world.Gradient(p_WQ_.col(s))));
+      }
+      const double worst_m = std::abs(worst_.field_m - std::min(worst_.truth_m, clamp_m));
+      if (worst_field_ && (zone == AuditZone::kInside || error_m <= worst_m)) continue;
+      worst_ = {t, asked, p_WQ_.col(s), samples.distance_m(s), truth_m};
+      worst_field_ = field;
+      worst_obstacles_ = obstacles;
+    }
+  }
+}
+
+std::vector<AuditRow> FieldAudit::Rows() const {
+  std::vector<AuditRow> rows;
+  for (const auto& [key, errors] : errors_) {
+    AuditRow& row = rows.emplace_back();
+    row.ahead_s = ahead_s_[key.first];
+    row.zone = key.second;
+    row.num_points = errors.distance_m.size();
+    row.median_m = Quantile(errors.distance_m, 0.5);
+    row.p99_m = Quantile(errors.distance_m, 0.99);
+    row.max_m = Quantile(errors.distance_m, 1);
+    row.gradient_median_deg = Quantile(errors.gradient_deg, 0.5);
+    row.gradient_p99_deg = Quantile(errors.gradient_deg, 0.99);
+    row.gradient_max_deg = Quantile(errors.gradient_deg, 1);
+  }
+  return rows;
+}
+
+AuditGrids FieldAudit::WorstGrids() const {
+  if (!worst_field_) throw std::invalid_argument("field audit: nothing was looked at");
+  const GridSpec& grid = scenario_.grid;
+  const TrueWorld world(scenario_, worst_obstacles_);
+  AlignedVector<float> field_m, truth_m;
+  field_m.reserve(grid.num_cells());
+  truth_m.reserve(grid.num_cells());
+  for (int k = 0; k < grid.size[2]; ++k) {
+    for (int j = 0; j < grid.size[1]; ++j) {
+      for (int i = 0; i < grid.size[0]; ++i) {
+        const Eigen::Vector3d p_WQ = grid.Center(i, j, k);
+        field_m.push_back(static_cast<float>(worst_field_->Sample(p_WQ, worst_.t).distance_m));
+        truth_m.push_back(
+            static_cast<float>(std::min(world.Distance(p_WQ), worst_field_->max_distance_m())));
+      }
+    }
+  }
+  return {SdfGrid(grid, std::move(field_m)), SdfGrid(grid, std::move(truth_m))};
+}
+
+}  // namespace sidestep

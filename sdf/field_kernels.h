@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "sdf/map/sdf_grid.h"
+
+/// The SIMD half of PlacedComposite: plain structs and three functions, compiled for several
+/// instruction sets. Each does for a block of points, a vector at a time, what SdfGrid::Sample and
+/// PlacedComposite::Sample do for one: the same operations in the same order, hence the same bits.
+/// Only placed_composite.cc includes this file.
+namespace sidestep::field_kernels {
+
+/// A grid, ready to be interpolated.
+struct Grid {
+  const float* distance_m = nullptr;
+  std::array<double, 3> first_m{}, last_m{};  ///< the domain, from centre to centre
+  double cells_per_m = 0;
+  std::array<std::int32_t, 3> last_lower{};  ///< largest index of a lower neighbour along each axis
+  std::int32_t stride_y = 0, stride_z = 0;   ///< in values
+};
+
+/// Whether the kernels can read this grid: two cells or more along each axis, and fewer than 2^31.
+bool IsReadable(const SdfGrid& grid);
+/// @param grid must be readable and outlive the view.
+Grid ViewOf(const SdfGrid& grid);
+
+/// An object's field, placed in the world.
+struct Placed {
+  Grid grid_O;
+  std::array<double, 9> R_WO{};  ///< row by row
+  std::array<double, 3> p_WO{};
+  double growth_m = 0;  ///< taken off each distance
+};
+
+inline constexpr std::size_t kBlockSize = 64;
+
+/// Points and what a field says of them, as a structure of arrays. All kBlockSize points must be
+/// set: the functions below work on whole vectors, and round `count` up.
+struct alignas(64) Block {
+  double x[kBlockSize], y[kBlockSize], z[kBlockSize];
+  double distance_m[kBlockSize];
+  double gradient_x[kBlockSize], gradient_y[kBlockSize], gradient_z[kBlockSize];
+  std::size_t count = 0;  // last: each array begins at a cache line
+};
+
+/// Samples a grid that does not move, clamped. @return how many of the points lie outside it.
+int SampleStatic(const Grid& grid, double max_distance_m, Block& block);
+
+/// Lowers the samples to those of an object where that is nearer.
+void LowerByObject(const Placed& object, Block& block);
+
+/// Axis-aligned boxes, one a lane; their number is a multiple of kBoxLanes.
+inline constexpr std::size_t kBoxLanes = 16;
+struct Boxes {
+  std::span<const float> x_low, y_low, z_low, x_high, y_high, z_high;
+  std::span<const float> slack_m;
+};
+
+/// Marks the boxes that are nearer to p than max(0, reach + slack), or hold p: one bit a box, the
+/// lowest first. @param bits has room for one bit a box.
+void FindNear(const Boxes& boxes, const std::array<float, 3>& p_m, float reach_m,
+              std::span<std::uint64_t> bits);
+
+}  // namespace sidestep::field_kernels

@@ -1,0 +1,217 @@
+#include "sdf/placed_composite.h"
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "core/shape.h"
+#include "sdf/map/distance_transform.h"
+#include "sdf/map/object_field.h"
+#include "tests/sdf/only_target.h"
+
+namespace sidestep {
+namespace {
+
+constexpr double kCell_m = 0.05;
+constexpr double kClamp_m = 0.3;
+
+double Uniform(std::mt19937_64& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+Eigen::Vector3d UniformPoint(std::mt19937_64& random, double reach) {
+  return {Uniform(random, -reach, reach), Uniform(random, -reach, reach),
+          Uniform(random, -reach, reach)};
+}
+
+OccupancyGrid RandomCells(std::mt19937_64& random, const std::array<int, 3>& size, double share) {
+  OccupancyGrid grid({Eigen::Vector3d::Constant(-1), kCell_m, size});
+  for (auto& cell : grid.cells) cell = Uniform(random, 0, 1) < share ? 1 : 0;
+  return grid;
+}
+
+struct World {
+  SdfGrid static_W;
+  std::vector<SdfGrid> shapes;
+  std::vector<PlacedObject> objects;  // of the shapes
+};
+
+// Objects of a few shapes, turned any way, all over a static grid and beyond it.
+World RandomWorld(std::mt19937_64& random, const std::array<int, 3>& size, int num_objects,
+                  bool tight) {
+  World world{ComputeSignedDistance(RandomCells(random, size, 0.003)), {}, {}};
+  world.shapes.push_back(
+      MakeObjectField(RandomCells(random, {3, 5, 4}, 0.4), kClamp_m, DistanceConvention::kSurface));
+  world.shapes.push_back(
+      MakeObjectField(RandomCells(random, {2, 1, 9}, 0.8), kClamp_m, DistanceConvention::kBwdist));
+  world.shapes.push_back(MakeShapeField(Sphere{0.11}, kCell_m, kClamp_m));
+  world.shapes.push_back(MakeShapeField(Box{{0.3, 0.02, 0.1}}, kCell_m, kClamp_m));
+  for (int n = 0; n < num_objects; ++n) {
+    const SdfGrid& field = world.shapes[static_cast<std::size_t>(n) % world.shapes.size()];
+    const Pose X_WO =
+        n % 3 == 0 ? Pose::Translation(UniformPoint(random, 1.2))
+                   : Pose::FromRollPitchYaw(UniformPoint(random, 3), UniformPoint(random, 1.2));
+    world.objects.push_back({&field, tight ? TightBound(field) : DomainBound(field), X_WO});
+  }
+  return world;
+}
+
+// The definition: the least of all, without any shortcut.
+DistanceSample Least(const World& world, const Eigen::Vector3d& p_WQ) {
+  const GridSample fixed = world.static_W.Sample(p_WQ);
+  DistanceSample least{kClamp_m, Eigen::Vector3d::Zero(), fixed.in_grid};
+  if (fixed.in_grid && fixed.distance_m < kClamp_m) {
+    least = {fixed.distance_m, fixed.gradient, true};
+  }
+  for (const PlacedObject& object : world.objects) {
+    const GridSample sample = object.field_O->Sample(object.X_WO.Inverse() * p_WQ);
+    if (sample.in_grid && sample.distance_m < least.distance_m) {
+      least.distance_m = sample.distance_m;
+      least.gradient_W = object.X_WO.Rotate(sample.gradient);
+    }
+  }
+  return least;
+}
+
+// Anywhere, at centres, on the borders of the static grid and just beyond.
+Eigen::Matrix3Xd Points(std::mt19937_64& random, const SdfGrid& grid, int count) {
+  Eigen::Matrix3Xd p_WQ(3, count);
+  for (int s = 0; s < count; ++s) {
+    Eigen::Vector3d p = UniformPoint(random, 1.5);
+    const auto axis = static_cast<Eigen::Index>(random() % 3);
+    const double low = grid.spec().first_center_m(axis), high = grid.last_center_m()(axis);
+    if (s % 4 == 1) p = grid.spec().Center(s % grid.spec().size[0], 0, s % grid.spec().size[2]);
+    if (s % 8 == 2) p(axis) = low;
+    if (s % 8 == 3) p(axis) = high;
+    if (s % 8 == 6) p(axis) = std::nextafter(low, -9);
+    if (s % 8 == 7) p(axis) = std::nextafter(high, 9);
+    p_WQ.col(s) = p;
+  }
+  return p_WQ;
+}
+
+class PlacedCompositeOn : public ::testing::TestWithParam<std::int64_t> {};
+
+TEST_P(PlacedCompositeOn, AnswersBatchesOfAnySizeAsItAnswersEachPoint) {
+  const OnlyTarget target(GetParam());
+  std::mt19937_64 random(1);
+  for (const std::array<int, 3>& size :
+       {std::array<int, 3>{40, 33, 41}, {2, 2, 2}, {40, 1, 40}, {1, 1, 1}}) {
+    for (const int num_objects : {0, 1, 5, 16, 40}) {
+      const World world = RandomWorld(random, size, num_objects, num_objects % 2 == 0);
+      const PlacedComposite field(world.static_W, world.objects, kClamp_m);
+      for (const int count : {1, 7, 64, 65, 300}) {
+        SCOPED_TRACE(testing::Message() << num_objects << " objects, " << count << " points, grid "
+                                        << size[0] << 'x' << size[1] << 'x' << size[2]);
+        const Eigen::Matrix3Xd p_WQ = Points(random, world.static_W, count);
+        DistanceSamples samples;
+        field.SampleMany(p_WQ, samples);
+        SampleColumns columns;
+        field.SampleMany(PointColumns(p_WQ.transpose()), columns);
+        int num_outside = 0;
+        for (int s = 0; s < count; ++s) {
+          const DistanceSample one = field.Sample(p_WQ.col(s));
+          num_outside += one.in_grid ? 0 : 1;
+          ASSERT_EQ(samples.distance_m(s), one.distance_m);
+          ASSERT_EQ(columns.distance_m(s), one.distance_m);
+          ASSERT_EQ(samples.gradient_W.col(s), one.gradient_W);
+          ASSERT_EQ(columns.gradient_W.row(s).transpose(), one.gradient_W);
+        }
+        ASSERT_EQ(samples.num_outside, num_outside);
+        ASSERT_EQ(columns.num_outside, num_outside);
+      }
+    }
+  }
+}
+
+TEST_P(PlacedCompositeOn, IsTheLeastOfAllFieldsHoweverManyThereAre) {
+  const OnlyTarget target(GetParam());
+  std::mt19937_64 random(2);
+  for (const int num_objects : {0, 1, 3, 15, 16, 17, 64, 128, 300}) {
+    for (const bool tight : {false, true}) {
+      SCOPED_TRACE(testing::Message() << num_objects << " objects, tight bounds: " << tight);
+      const World world = RandomWorld(random, {40, 33, 41}, num_objects, tight);
+      const PlacedComposite field(world.static_W, world.objects, kClamp_m);
+      const Eigen::Matrix3Xd p_WQ = Points(random, world.static_W, 2000);
+      int num_by_objects = 0;
+      for (Eigen::Index s = 0; s < p_WQ.cols(); ++s) {
+        const DistanceSample expected = Least(world, p_WQ.col(s));
+        const DistanceSample sample = field.Sample(p_WQ.col(s));
+        ASSERT_NEAR(sample.distance_m, expected.distance_m, 1e-12);
+        ASSERT_EQ(sample.in_grid, expected.in_grid);
+        const GridSample fixed = world.static_W.Sample(p_WQ.col(s));
+        num_by_objects += !fixed.in_grid || sample.distance_m < fixed.distance_m - 1e-3 ? 1 : 0;
+      }
+      EXPECT_TRUE(num_objects == 0 || num_by_objects > 0);
+    }
+  }
+}
+
+TEST_P(PlacedCompositeOn, HasTheGradientOfItsValue) {
+  const OnlyTarget target(GetParam());
+  std::mt19937_64 random(3);
+  const World world = RandomWorld(random, {40, 33, 41}, 20, true);
+  const PlacedComposite field(world.static_W, world.objects, kClamp_m);
+  const double step_m = 1e-7;
+  int num_smooth = 0;
+  for (int s = 0; s < 3000; ++s) {
+    const Eigen::Vector3d p = UniformPoint(random, 1);
+    const DistanceSample sample = field.Sample(p);
+    for (int a = 0; a < 3; ++a) {
+      const Eigen::Vector3d step = step_m * Eigen::Vector3d::Unit(a);
+      const double above = field.Sample(p + step).distance_m - sample.distance_m;
+      const double below = sample.distance_m - field.Sample(p - step).distance_m;
+      if (std::abs(above - below) > 1e-6 * step_m) continue;  // a crease
+      ++num_smooth;
+      ASSERT_NEAR(sample.gradient_W(a), (above + below) / (2 * step_m), 1e-6);
+    }
+  }
+  EXPECT_GT(num_smooth, 4000);
+}
+
+INSTANTIATE_TEST_SUITE_P(Target, PlacedCompositeOn,
+                         ::testing::ValuesIn(hwy::SupportedAndGeneratedTargets()),
+                         [](const auto& test) { return std::string(hwy::TargetName(test.param)); });
+
+TEST(TightBound, IsNeverAboveTheFieldAndNearIt) {
+  std::mt19937_64 random(4);
+  const World world = RandomWorld(random, {3, 3, 3}, 0, true);
+  for (const SdfGrid& field : world.shapes) {
+    const FieldBound bound = TightBound(field);
+    double least_gap_m = 1;
+    for (int s = 0; s < 20000; ++s) {
+      const Eigen::Vector3d u = (UniformPoint(random, 1).array() + 1) / 2;
+      const Eigen::Vector3d p = field.spec().first_center_m +
+                                u.cwiseProduct(field.last_center_m() - field.spec().first_center_m);
+      const double to_box_m = (bound.low_O - p).cwiseMax(p - bound.high_O).cwiseMax(0.0).norm();
+      if (to_box_m == 0) continue;
+      const double gap_m = field.Sample(p).distance_m - (to_box_m - bound.slack_m);
+      ASSERT_GE(gap_m, 0);
+      least_gap_m = std::min(least_gap_m, gap_m);
+    }
+    EXPECT_LT(least_gap_m, 3 * kCell_m) << "a bound that never comes near is of no use";
+  }
+}
+
+TEST(TightBound, OfAFieldThatIsFreeEverywhereIsItsDomain) {
+  const SdfGrid free({{0, 0, 0}, 0.1, {4, 4, 4}}, AlignedVector<float>(64, 1.0F));
+  EXPECT_EQ(TightBound(free).low_O, DomainBound(free).low_O);
+  EXPECT_EQ(TightBound(free).high_O, DomainBound(free).high_O);
+  EXPECT_EQ(TightBound(free).slack_m, DomainBound(free).slack_m);
+}
+
+TEST(AlignedVector, BeginsAtACacheLine) {
+  for (const std::size_t size : {1, 3, 1000, 1000000}) {
+    const AlignedVector<float> values(size, 0.0F);
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(values.data()) % 64, 0u);
+  }
+}
+
+}  // namespace
+}  // namespace sidestep
