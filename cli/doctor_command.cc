@@ -4,6 +4,7 @@
 #include <string>
 #include <thread>
 
+#include "bench/report/gnuplot.h"
 #include "cli/command.h"
 #include "cli/data_paths.h"
 #include "cli/versions.h"
@@ -22,6 +23,10 @@ class Report {
   void Bad(const std::string& what, const std::string& detail, const std::string& remedy) {
     Print("MISSING", what, detail + "; remedy: " + remedy);
     ++num_bad_;
+  }
+  /// Something that can be done without.
+  void Absent(const std::string& what, const std::string& detail, const std::string& remedy) {
+    Print("absent", what, detail + "; remedy: " + remedy);
   }
   int num_bad() const { return num_bad_; }
 
@@ -70,6 +75,15 @@ void CheckVideo(Report& report) {
   }
 }
 
+void CheckGnuplot(Report& report) {
+  const std::string version = GnuplotVersion();
+  if (version.empty()) {
+    report.Absent("figures", "no gnuplot: sidestep reproduce draws none", kGnuplotRemedy);
+  } else {
+    report.Good("figures", version);
+  }
+}
+
 int Diagnose() {
   Report report;
   for (const auto& [part, version] : Versions()) report.Good(part, version);
@@ -77,6 +91,7 @@ int Diagnose() {
   CheckData(report);
   CheckGl(report);
   CheckVideo(report);
+  CheckGnuplot(report);
   return report.num_bad() == 0 ? 0 : 1;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bench/metrics/registry.h"
+#include "bench/reproduce/field_scene.h"
 #include "cli/command.h"
 #include "cli/data_paths.h"
 #include "core/input_error.h"
@@ -31,6 +32,7 @@ std::vector<std::string> KnowledgeNames(const DataPaths&) {
 
 const Kind kKinds[] = {
     {"scenarios", [](const DataPaths& paths) { return ScenarioNames(paths.scenarios); }},
+    {"field_scenes", [](const DataPaths&) { return FieldSceneNames(); }},
     {"robots", [](const DataPaths& paths) { return RobotModel::ListNames(paths.models); }},
     {"knowledge", &KnowledgeNames},
     {"planners", [](const DataPaths&) { return PlannerNames(); }},
@@ -63,6 +65,7 @@ int ListAll() {
     const std::string file = paths.scenarios + "/" + name + ".yaml";
     notes[name] = LoadScenario(file).description + ChoicesOf(file);
   }
+  for (const std::string& name : FieldSceneNames()) notes[name] = MakeFieldScene(name).description;
   for (const Metric& metric : Metrics()) {
     notes[metric.name] = metric.meaning + std::string(" [") + metric.unit + "]";
   }
@@ -95,10 +98,10 @@ int ListNames(const std::string& kind_name) {
 
 void AddListCommand(CommandLine& line) {
   auto kind = std::make_shared<std::string>();
-  CLI::App* const list =
-      line.app.add_subcommand("list",
-                              "List what can be named: scenarios, robots, knowledge, planners, "
-                              "predictors, sensors, metrics");
+  CLI::App* const list = line.app.add_subcommand(
+      "list",
+      "List what can be named: scenarios, field scenes, robots, knowledge, planners, "
+      "predictors, sensors, metrics");
   list->add_option("KIND", *kind, "Only the names of this kind, one a line, for scripts");
   list->callback([&line, kind] { line.exit_code = kind->empty() ? ListAll() : ListNames(*kind); });
 }

@@ -1,6 +1,5 @@
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,9 +9,9 @@
 #include "bench/statistics.h"
 #include "cli/command.h"
 #include "cli/number_range.h"
+#include "cli/out_folder.h"
 #include "cli/versions.h"
 #include "cli/wiring.h"
-#include "core/input_error.h"
 
 namespace sidestep {
 namespace {
@@ -49,7 +48,7 @@ int Run(const RunOptions& options) {
   Overrides overrides = options.overrides;
   overrides.settings = ParseSettings(options.settings);
   const Problem problem = LoadProblem(options.scenario, overrides, paths);
-  const std::string out = MakeFolder(options.out.empty() ? "out/" + problem.scenario.name + "/" +
+  const std::string out = MakeOutFolder(options.out.empty() ? "out/" + problem.scenario.name + "/" +
                                                                problem.scenario.knowledge
                                                          : options.out);
   EpisodeResult result = RunEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths));

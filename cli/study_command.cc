@@ -11,6 +11,7 @@
 #include "bench/study.h"
 #include "cli/command.h"
 #include "cli/number_range.h"
+#include "cli/out_folder.h"
 #include "cli/wiring.h"
 #include "core/input_error.h"
 
@@ -99,7 +100,7 @@ int Study(const StudyOptions& options) {
     }
   }
   MakeCase(options, settings, cases.front(), paths);  // complain before the work begins
-  const std::string out = MakeFolder(options.out);
+  const std::string out = MakeOutFolder(options.out);
 
   std::vector<StudyRow> rows(cases.size());
   std::mutex printing;

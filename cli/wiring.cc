@@ -64,15 +64,6 @@ std::vector<std::string> ModelNames(const std::string& models, const std::string
 
 }  // namespace
 
-std::string MakeFolder(const std::string& out) {
-  std::error_code error;
-  std::filesystem::create_directories(out, error);
-  if (error || !std::filesystem::is_directory(out)) {
-    throw InputError("--out", "'" + out + "' cannot be made a folder");
-  }
-  return out;
-}
-
 Settings ParseSettings(const std::vector<std::string>& texts) {
   Settings settings;
   for (const std::string& text : texts) {

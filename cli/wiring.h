@@ -23,9 +23,6 @@ struct Overrides {
 /// KEY=VALUE each. @throws InputError for one without a key or a =, or a key given twice.
 Settings ParseSettings(const std::vector<std::string>& texts);
 
-/// Makes the folder `out` unless it is there, and answers its name. @throws InputError for --out.
-std::string MakeFolder(const std::string& out);
-
 /// A scenario that is ready to run, and its robot.
 struct Problem {
   Scenario scenario;

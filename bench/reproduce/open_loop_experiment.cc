@@ -38,6 +38,7 @@ OpenLoopExperiment WamSinglePillar() {
   e.direction = {-0.2726, 0.9621, 0};
   e.stop_s = 2;
   e.speeds_m_s = kWamSpeeds;
+  e.excluded_speeds_m_s = {0.5};
   e.pairs = {{"pose1", "pose3"}, {"pose1", "pose4"}, {"pose1", "pose5"}, {"pose2", "pose3"},
              {"pose2", "pose4"}, {"pose2", "pose5"}, {"pose3", "pose4"}};
   e.sigma_obs = 0.2;

@@ -30,6 +30,8 @@ struct OpenLoopExperiment {
   Eigen::Vector3d direction;  ///< its velocity is speed * direction
   double stop_s = 0;          ///< when it stops
   std::vector<double> speeds_m_s;
+  /// Speeds that the publication leaves out: the box comes to rest where the arm has to go.
+  std::vector<double> excluded_speeds_m_s;
 
   /// Names of the robot's configurations; pair p of the published tables is pairs[p - 1].
   std::vector<std::pair<std::string, std::string>> pairs;

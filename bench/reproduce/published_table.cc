@@ -6,24 +6,11 @@
 #include <map>
 #include <utility>
 
+#include "bench/reproduce/published_columns.h"
 #include "core/input_error.h"
 
 namespace sidestep {
 namespace {
-
-constexpr const char* kPair = "pair";
-constexpr const char* kSpeed = "speed_m_per_s";
-
-// How the published columns call the kinds of knowledge, in their order; the last is ours.
-struct CaseName {
-  Knowledge knowledge;
-  const char* name;
-};
-constexpr CaseName kCases[] = {{Knowledge::kStatic, "static"},
-                               {Knowledge::kExecuteAndUpdate, "execute_update"},
-                               {Knowledge::kFullKnowledge, "full_knowledge"},
-                               {Knowledge::kPrediction, "prediction"}};
-constexpr std::size_t kNumPublishedCases = 3;
 
 struct Measure {
   const char* prefix;
@@ -31,10 +18,10 @@ struct Measure {
   double (*get)(const OpenLoopRow::Case& entry);
 };
 constexpr Measure kPublishedMeasures[] = {
-    {"n_colliding_states_", true,
+    {kCollidingPrefix, true,
      [](const OpenLoopRow::Case& c) { return static_cast<double>(c.result.colliding_states); }},
-    {"gp_cost_", false, [](const OpenLoopRow::Case& c) { return c.result.gp_cost; }},
-    {"obstacle_cost_", false, [](const OpenLoopRow::Case& c) { return c.result.obstacle_cost; }},
+    {kGpCostPrefix, false, [](const OpenLoopRow::Case& c) { return c.result.gp_cost; }},
+    {kObstacleCostPrefix, false, [](const OpenLoopRow::Case& c) { return c.result.obstacle_cost; }},
 };
 constexpr Measure kOwnMeasures[] = {
     {"iterations_", true,
@@ -55,18 +42,19 @@ struct Column {
 
 std::vector<Column> Columns(const OpenLoopStudy& study) {
   std::vector<Column> columns;
-  const auto add = [&](const Measure& measure, const CaseName& entry) {
+  const auto add = [&](const Measure& measure, const PublishedCase& entry) {
     if (study.rows.empty() || !study.rows.front().cases.contains(entry.knowledge)) return;
     columns.push_back({std::string(measure.prefix) + entry.name, entry.knowledge, measure.get});
   };
-  for (const Measure& measure : kPublishedMeasures) {
-    for (std::size_t c = 0; c < kNumPublishedCases; ++c) add(measure, kCases[c]);
-  }
-  for (const Measure& measure : kPublishedMeasures) {
-    for (std::size_t c = kNumPublishedCases; c < std::size(kCases); ++c) add(measure, kCases[c]);
+  for (const bool is_published : {true, false}) {
+    for (const Measure& measure : kPublishedMeasures) {
+      for (const PublishedCase& entry : kPublishedCases) {
+        if (entry.is_published == is_published) add(measure, entry);
+      }
+    }
   }
   for (const Measure& measure : kOwnMeasures) {
-    for (const CaseName& entry : kCases) add(measure, entry);
+    for (const PublishedCase& entry : kPublishedCases) add(measure, entry);
   }
   return columns;
 }
@@ -85,9 +73,9 @@ Key MakeKey(double pair, double speed_m_s) {
 }
 
 std::map<Key, std::size_t> Index(const CsvTable& table, const std::string& path) {
-  const auto pair = table.Find(kPair), speed = table.Find(kSpeed);
+  const auto pair = table.Find(kPairColumn), speed = table.Find(kSpeedColumn);
   if (!pair || !speed) {
-    throw InputError(path, 1, pair ? kSpeed : kPair, "there is no such column");
+    throw InputError(path, 1, pair ? kSpeedColumn : kPairColumn, "there is no such column");
   }
   std::map<Key, std::size_t> rows;
   for (std::size_t row = 0; row < table.num_rows(); ++row) {
@@ -117,14 +105,15 @@ std::string Print(const char* format, Values... values) {
 
 CsvTable MakeOpenLoopTable(const OpenLoopStudy& study) {
   const std::vector<Column> columns = Columns(study);
-  std::vector<std::string> names = {kPair, kSpeed};
+  std::vector<std::string> names = {kPairColumn, kSpeedColumn};
   for (const Column& column : columns) names.push_back(column.name);
   names.push_back("n_ignored_spheres");
   CsvTable table(names);
   for (const OpenLoopRow& row : study.rows) {
     std::vector<std::optional<double>> fields = {row.pair, row.speed_m_s};
     for (const Column& column : columns) {
-      fields.push_back(column.get(row.cases.at(column.knowledge)));
+      const double value = column.get(row.cases.at(column.knowledge));
+      fields.push_back(std::isfinite(value) ? std::optional(value) : std::nullopt);
     }
     fields.push_back(static_cast<double>(study.ignored_spheres.size()));
     table.AddRow(std::move(fields));

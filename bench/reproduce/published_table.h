@@ -9,7 +9,7 @@
 namespace sidestep {
 
 /// The rows as a table: first the columns of the published files, under their names and in their
-/// order, for the kinds of knowledge that were run; then ours.
+/// order, for the kinds of knowledge that were run; then ours. What is not finite is left empty.
 CsvTable MakeOpenLoopTable(const OpenLoopStudy& study);
 
 /// How one column compares, over the rows that both tables have.

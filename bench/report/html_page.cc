@@ -1,0 +1,116 @@
+#include "bench/report/html_page.h"
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+
+#include "core/input_error.h"
+
+namespace sidestep {
+namespace {
+
+constexpr const char* kStyle = R"(
+body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 62rem; margin: 2rem auto;
+       padding: 0 1rem; }
+h1 { font-size: 1.7rem; } h2 { font-size: 1.25rem; margin-top: 2.2rem; }
+table { border-collapse: collapse; margin: 1rem 0; font-variant-numeric: tabular-nums;
+        font-size: 0.9rem; }
+th, td { padding: 0.25rem 0.7rem; text-align: right; border-bottom: 1px solid #ddd; }
+th { border-bottom: 2px solid #888; vertical-align: bottom; }
+th:first-child, td:first-child { text-align: left; }
+figure { margin: 1.5rem 0; } figure img { max-width: 100%; }
+figcaption { color: #555; font-size: 0.9rem; }
+pre { background: #f5f5f5; padding: 0.7rem; overflow-x: auto; font-size: 0.85rem; }
+)";
+
+std::string Escape(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      default:
+        escaped += c;
+    }
+  }
+  return escaped;
+}
+
+// As a picture of its own and not as part of the page: then names inside two pictures cannot clash.
+std::string DataUri(const std::string& svg) {
+  constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
+  const std::string plain = std::string(kPlain) + "-_.!~*() =:/,;+@?";
+  std::string uri = "data:image/svg+xml,";
+  for (const char c : svg) {
+    if (plain.find(c) != std::string::npos) {
+      uri += c;
+    } else {
+      char code[4];
+      std::snprintf(code, sizeof code, "%%%02X", static_cast<unsigned char>(c));
+      uri += code;
+    }
+  }
+  return uri;
+}
+
+}  // namespace
+
+HtmlPage::HtmlPage(const std::string& title) {
+  text_ =
+      "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
+      Escape(title) + "</title>\n<style>" + kStyle + "</style>\n<h1>" + Escape(title) + "</h1>\n";
+}
+
+void HtmlPage::Heading(const std::string& text) { text_ += "<h2>" + Escape(text) + "</h2>\n"; }
+
+void HtmlPage::Paragraph(const std::string& text) { text_ += "<p>" + Escape(text) + "</p>\n"; }
+
+void HtmlPage::Preformatted(const std::string& text) {
+  text_ += "<pre>" + Escape(text) + "</pre>\n";
+}
+
+void HtmlPage::Table(const std::vector<std::string>& header,
+                     const std::vector<std::vector<std::string>>& rows) {
+  const auto add = [this](const std::vector<std::string>& cells, const std::string& tag) {
+    text_ += "<tr>";
+    for (const std::string& cell : cells) {
+      text_ += "<" + tag + ">" + Escape(cell) + "</" + tag + ">";
+    }
+    text_ += "</tr>\n";
+  };
+  text_ += "<table>\n";
+  add(header, "th");
+  for (const std::vector<std::string>& row : rows) add(row, "td");
+  text_ += "</table>\n";
+}
+
+void HtmlPage::Picture(const std::string& svg_path, const std::string& caption) {
+  std::ifstream stream(svg_path, std::ios::binary);
+  if (!stream) throw InputError(svg_path, "cannot be read");
+  const std::string svg{std::istreambuf_iterator<char>(stream), {}};
+  text_ += "<figure><img alt=\"" + Escape(caption) + "\" src=\"" + DataUri(svg) +
+           "\"><figcaption>" + Escape(caption) + "</figcaption></figure>\n";
+}
+
+std::string HtmlPage::ToText() const { return text_ + "</html>\n"; }
+
+std::string Format(const char* format, double value) {
+  if (!std::isfinite(value)) return "-";
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace sidestep {
+
+/// A page that stands alone: text, tables and pictures in one file, to be read top to bottom. Texts
+/// are plain: what means something in HTML is escaped.
+class HtmlPage {
+ public:
+  explicit HtmlPage(const std::string& title);
+
+  void Heading(const std::string& text);
+  void Paragraph(const std::string& text);
+  void Preformatted(const std::string& text);
+  /// The first cell of a row is left-aligned, the others are numbers.
+  void Table(const std::vector<std::string>& header,
+             const std::vector<std::vector<std::string>>& rows);
+  /// Puts a copy of an SVG file into the page. @throws InputError if it cannot be read.
+  void Picture(const std::string& svg_path, const std::string& caption);
+
+  std::string ToText() const;
+
+ private:
+  std::string text_;
+};
+
+/// A number as printf would show it, "-" if it is not finite.
+std::string Format(const char* format, double value);
+
+}  // namespace sidestep

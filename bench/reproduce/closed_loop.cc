@@ -1,0 +1,94 @@
+#include "bench/reproduce/closed_loop.h"
+
+#include <limits>
+
+#include "bench/reproduce/open_loop_experiment.h"
+
+namespace sidestep {
+namespace {
+
+constexpr int kMainGrid = 96;           // voxels per side of the publication's figures
+constexpr int kStepOfRates = 10;        // predictions are timed from this step on
+constexpr double kSceneMargin_m = 0.2;  // of the published timings
+constexpr int kSteps = 31;
+constexpr double kStep_s = 0.1;
+
+GridSpec ClosedLoopGrid(int voxels_per_side) {
+  return {Eigen::Vector3d(-1, -1, -1), 0.04, {voxels_per_side, voxels_per_side, voxels_per_side}};
+}
+
+FieldScene Walkway(double speed_m_s) {
+  const OpenLoopExperiment experiment = MakeOpenLoopExperiment("panda_hsr");
+  return {"walkway",
+          "an HSR between two tables",
+          experiment.static_boxes,
+          {{experiment.moving_box, speed_m_s * experiment.direction,
+            std::numeric_limits<double>::infinity()}}};
+}
+
+EpisodeTime At(int step) { return EpisodeTime(step * kStep_s); }
+
+// The fields of all later steps, as step `now` predicts them.
+void TimeStep(const FieldScene& scene, const GridSpec& grid, double margin_m, int now,
+              std::vector<double>& init_s, std::vector<PredictionTimes>& predictions) {
+  FieldTimer timer(scene, grid, margin_m, At(now - 1), At(now));
+  init_s.push_back(timer.init_s());
+  for (int k = now + 1; k < kSteps; ++k) predictions.push_back(timer.Time(At(k)));
+}
+
+}  // namespace
+
+Scenario PublishedClosedLoop(Scenario scenario, double speed_m_s, int voxels_per_side) {
+  scenario.epsilon_m = 0.3;
+  scenario.sigma_obs = 0.05;
+  scenario.num_interpolated = 0;
+  scenario.sensor_rate_hz = scenario.replan_rate_hz;
+  scenario.grid = ClosedLoopGrid(voxels_per_side);
+  for (MovingObstacle& obstacle : scenario.moving_obstacles) {
+    std::visit([&](auto& motion) { motion.speed_m_s = speed_m_s; }, obstacle.motion);
+  }
+  return scenario;
+}
+
+void TimeWholeRun(const FieldScene& scene, const GridSpec& grid, double margin_m,
+                  WholeRunTimes& times) {
+  for (int now = 1; now + 1 < kSteps; ++now) {
+    TimeStep(scene, grid, margin_m, now, times.init_s, times.predictions);
+  }
+}
+
+ClosedLoopStudy RunClosedLoopStudy(const Scenario& scenario, const RobotModel& robot,
+                                   const WorldFactory& make_world, const ClosedLoopOptions& options,
+                                   const std::function<void(const std::string&)>& on_part) {
+  const auto say = [&on_part](const std::string& what) {
+    if (on_part) on_part(what);
+  };
+  ClosedLoopStudy study;
+  const auto run = [&](const std::string& knowledge, int voxels_per_side) {
+    say(knowledge + ", " + std::to_string(voxels_per_side) + " voxels per side");
+    Scenario published = PublishedClosedLoop(scenario, options.speed_m_s, voxels_per_side);
+    published.knowledge = knowledge;
+    return RunEpisode(published, robot, make_world);
+  };
+  study.update = run("execute_and_update", kMainGrid);
+  study.prediction = run("prediction", kMainGrid);
+
+  for (const int voxels : options.voxels_per_side) {
+    LoopRate& rate = study.rates.emplace_back();
+    rate.voxels_per_side = voxels;
+    rate.cycle_s = run("prediction", voxels).times.at("cycle");
+    const Scenario published = PublishedClosedLoop(scenario, options.speed_m_s, voxels);
+    std::vector<double> init_s;
+    TimeStep(Walkway(options.speed_m_s), published.grid,
+             published.epsilon_m + robot.largest_sphere_radius_m(), kStepOfRates, init_s,
+             rate.predictions);
+  }
+  for (const std::string& name : FieldSceneNames()) {
+    say("435 predictions of " + name);
+    TimeWholeRun(MakeFieldScene(name), PublishedTimingGrid(kMainGrid), kSceneMargin_m,
+                 study.whole_run);
+  }
+  return study;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/episode.h"
+#include "bench/report/figure.h"
+#include "bench/reproduce/csv_table.h"
+#include "bench/reproduce/field_timer.h"
+#include "robot/robot_model.h"
+#include "scenarios/scenario.h"
+
+namespace sidestep {
+
+/// The closed-loop study of Finean, Merkt & Havoutis (ICAPS 2021), on this loop.
+struct ClosedLoopOptions {
+  double speed_m_s = 1.4;
+  std::vector<int> voxels_per_side = {64, 96, 128, 160, 192, 224, 256, 288, 320};
+};
+
+/// The scenario with the settings of the published closed loop: sigma, epsilon, no interpolated
+/// costs, an observation each cycle, a cube of cells of 4 cm from (-1, -1, -1).
+Scenario PublishedClosedLoop(Scenario scenario, double speed_m_s, int voxels_per_side);
+
+/// How fast the loop turns and a field is predicted, in one grid. One core, CPU time.
+struct LoopRate {
+  int voxels_per_side = 0;
+  std::vector<double> cycle_s;               ///< of each planning cycle of a run
+  std::vector<PredictionTimes> predictions;  ///< of the fields of later steps
+};
+
+/// What a whole run costs that predicts at each step, from the second on, the fields of all the
+/// steps that remain: 435 predictions of 31 steps. Over the five field scenes, 96 voxels a side.
+struct WholeRunTimes {
+  std::vector<double> init_s;
+  std::vector<PredictionTimes> predictions;
+};
+
+struct ClosedLoopStudy {
+  EpisodeResult update, prediction;  ///< at the speed, 96 voxels a side
+  std::vector<LoopRate> rates;
+  WholeRunTimes whole_run;
+};
+
+/// @param scenario to be run with the published settings; its task must be resolved.
+/// @param on_part called with what is about to be done.
+ClosedLoopStudy RunClosedLoopStudy(const Scenario& scenario, const RobotModel& robot,
+                                   const WorldFactory& make_world, const ClosedLoopOptions& options,
+                                   const std::function<void(const std::string&)>& on_part = {});
+
+/// The 435 predictions of a scene, each step from the second on predicting all that remain.
+void TimeWholeRun(const FieldScene& scene, const GridSpec& grid, double margin_m,
+                  WholeRunTimes& times);
+
+}  // namespace sidestep

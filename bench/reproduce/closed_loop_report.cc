@@ -1,0 +1,312 @@
+#include "bench/reproduce/closed_loop_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <utility>
+
+#include "bench/report/html_page.h"
+#include "bench/statistics.h"
+
+namespace sidestep {
+namespace {
+
+constexpr const char* kVoxels = "voxels_per_side";
+constexpr double kPlotStep_s = 0.01;  // a point each, of the control rate's 1 kHz
+
+// The columns of the rates: name, words, and whether a line of the figure.
+struct Rate {
+  const char* column;
+  const char* words;
+  const char* published;  // column of ours for the published figure; empty: none
+};
+constexpr Rate kRates[] = {
+    {"update_fastest_hz", "update, shortest cycle", "published_update_fastest_hz"},
+    {"update_median_hz", "update, median cycle", "published_update_median_hz"},
+    {"update_slowest_hz", "update, longest cycle", "published_update_slowest_hz"},
+    {"dense_prediction_hz", "prediction, dense composite", "published_prediction_hz"},
+    {"lazy_prediction_hz", "prediction, lazy composite", ""},
+};
+
+// The authors' summary of 435 predictions in each of five scenes, ten times, at 96 voxels a side:
+// least, median, mean, greatest [ms].
+struct Summary {
+  const char* words;
+  double least_ms, median_ms, mean_ms, greatest_ms;
+};
+constexpr Summary kPublishedWholeRun[] = {{"full computation", 26.2, 29.7, 29.9, 41.2},
+                                          {"initialisation", 26.8, 30.9, 30.8, 42.8},
+                                          {"composite (dense)", 1.354, 1.539, 1.697, 6.759}};
+
+std::vector<double> Collect(const std::vector<PredictionTimes>& predictions,
+                            double PredictionTimes::*value) {
+  std::vector<double> values;
+  for (const PredictionTimes& times : predictions) values.push_back(times.*value);
+  return values;
+}
+
+// The field of the row with that many voxels; of several rows, the median.
+std::optional<double> Lookup(const std::optional<CsvTable>& table, int voxels,
+                             const std::string& column) {
+  if (!table) return {};
+  const auto key = table->Find(kVoxels), value = table->Find(column);
+  if (!key || !value) return {};
+  std::vector<double> values;
+  for (std::size_t row = 0; row < table->num_rows(); ++row) {
+    if (table->At(row, *key) == voxels && table->At(row, *value)) {
+      values.push_back(*table->At(row, *value));
+    }
+  }
+  if (values.empty()) return {};
+  return Quantile(std::move(values), 0.5);
+}
+
+Summary Summarise(const char* words, const std::vector<double>& values_s) {
+  double mean = 0;
+  for (const double value : values_s) mean += value / static_cast<double>(values_s.size());
+  return {words, 1e3 * Quantile(values_s, 0), 1e3 * Quantile(values_s, 0.5), 1e3 * mean,
+          1e3 * Quantile(values_s, 1)};
+}
+
+std::vector<Summary> SummariseWholeRun(const WholeRunTimes& times) {
+  return {Summarise("full computation", Collect(times.predictions, &PredictionTimes::full_s)),
+          Summarise("initialisation", times.init_s),
+          Summarise("composite (dense)", Collect(times.predictions, &PredictionTimes::dense_s)),
+          Summarise("composite (lazy)", Collect(times.predictions, &PredictionTimes::lazy_s))};
+}
+
+std::vector<std::string> Cells(const Summary& summary) {
+  return {summary.words, Format("%.3g", summary.least_ms), Format("%.3g", summary.median_ms),
+          Format("%.3g", summary.mean_ms), Format("%.3g", summary.greatest_ms)};
+}
+
+Panel JointPanel(const std::string& title, const std::string& y_label, const Recording& recording,
+                 Eigen::VectorXd ControlSample::*value, bool with_key) {
+  Panel panel;
+  panel.title = title;
+  panel.x_label = "s";
+  panel.y_label = y_label;
+  const int num_joints = static_cast<int>(recording.q_start.size());
+  for (int j = 0; j < num_joints; ++j) {
+    Series series;
+    series.style = Series::Style::kPlainLine;
+    series.color = j;
+    if (with_key) series.title = "joint " + std::to_string(j + 1);
+    double next_s = 0;
+    for (const ControlSample& sample : recording.control) {
+      if (sample.t.seconds() < next_s) continue;
+      next_s += kPlotStep_s;
+      series.x.push_back(sample.t.seconds());
+      series.y.push_back((sample.*value)(j));
+    }
+    panel.series.push_back(std::move(series));
+  }
+  return panel;
+}
+
+std::vector<std::string> RunCells(const char* words, const EpisodeResult& result) {
+  const auto& metrics = result.recording.metrics;
+  double fastest = 0;
+  for (const ControlSample& sample : result.recording.control) {
+    fastest = std::max(fastest, sample.v.cwiseAbs().maxCoeff());
+  }
+  return {words,
+          ToString(result.outcome),
+          Format("%.0f mm", 1e3 * metrics.at("min_clearance_m")),
+          Format("%.2f s", metrics.at("time_to_goal_s")),
+          Format("%.1f", metrics.at("gp_cost")),
+          Format("%.2f rad/s", fastest),
+          Format("%.1f ms", 1e3 * Quantile(result.times.at("cycle"), 0.5))};
+}
+
+const std::vector<std::string> kRunHeader = {"planner knows", "outcome", "least clearance",
+                                             "time to goal",  "GP cost", "fastest joint",
+                                             "median cycle"};
+
+std::string TextTable(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()), 0);
+    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      const std::string padding(widths[c] - row[c].size(), ' ');
+      text += c == 0 ? row[c] + padding : "  " + padding + row[c];
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+// Ours, and in brackets the published figure if there is one.
+std::vector<std::vector<std::string>> RateRows(const CsvTable& rates) {
+  std::vector<std::vector<std::string>> rows = {{"voxels a side"}};
+  for (const Rate& rate : kRates) rows[0].push_back(rate.words);
+  for (std::size_t row = 0; row < rates.num_rows(); ++row) {
+    rows.push_back({Format("%.0f", rates.At(row, 0).value())});
+    for (const Rate& rate : kRates) {
+      std::string cell = Format("%.3g Hz", rates.At(row, rates.Find(rate.column).value()).value());
+      const auto column = rates.Find(rate.published);
+      if (column && rates.At(row, *column)) {
+        cell += " (" + Format("%.3g", *rates.At(row, *column)) + ")";
+      }
+      rows.back().push_back(cell);
+    }
+  }
+  return rows;
+}
+
+}  // namespace
+
+CsvTable MakeRatesTable(const ClosedLoopStudy& study, const PublishedRates& published) {
+  std::vector<std::string> columns = {kVoxels, "n_cycles"};
+  for (const Rate& rate : kRates) columns.emplace_back(rate.column);
+  for (const Rate& rate : kRates) {
+    if (*rate.published != '\0') columns.emplace_back(rate.published);
+  }
+  CsvTable table(columns);
+  for (const LoopRate& rate : study.rates) {
+    const auto hz = [](const std::vector<double>& values_s, double p) {
+      return std::optional(1 / Quantile(values_s, p));
+    };
+    std::vector<std::optional<double>> row = {
+        rate.voxels_per_side,
+        static_cast<double>(rate.cycle_s.size()),
+        hz(rate.cycle_s, 0),
+        hz(rate.cycle_s, 0.5),
+        hz(rate.cycle_s, 1),
+        hz(Collect(rate.predictions, &PredictionTimes::dense_s), 0.5),
+        hz(Collect(rate.predictions, &PredictionTimes::lazy_s), 0.5)};
+    for (const char* const column : {"fastest_rate_hz", "median_rate_hz", "slowest_rate_hz"}) {
+      row.push_back(Lookup(published.loops, rate.voxels_per_side, column));
+    }
+    const auto prediction_s =
+        Lookup(published.predictions, rate.voxels_per_side, "composite_prediction_s");
+    row.push_back(prediction_s ? std::optional(1 / *prediction_s) : std::nullopt);
+    table.AddRow(std::move(row));
+  }
+  return table;
+}
+
+CsvTable MakeWholeRunTable(const WholeRunTimes& times) {
+  CsvTable table({"kind", "n_values", "least_ms", "median_ms", "mean_ms", "greatest_ms"});
+  double kind = 0;
+  for (const Summary& summary : SummariseWholeRun(times)) {
+    const bool is_init = kind == 1;
+    table.AddRow({++kind,
+                  static_cast<double>(is_init ? times.init_s.size() : times.predictions.size()),
+                  summary.least_ms, summary.median_ms, summary.mean_ms, summary.greatest_ms});
+  }
+  return table;
+}
+
+Figure MakeJointsFigure(const ClosedLoopStudy& study) {
+  Figure figure;
+  figure.columns = 2;
+  figure.panel_height_px = 340;
+  const Recording &update = study.update.recording, &prediction = study.prediction.recording;
+  figure.panels = {
+      JointPanel("Execute and update: positions", "rad", update, &ControlSample::q, false),
+      JointPanel("Prediction: positions", "rad", prediction, &ControlSample::q, false),
+      JointPanel("Execute and update: velocities", "rad/s", update, &ControlSample::v, true),
+      JointPanel("Prediction: velocities", "rad/s", prediction, &ControlSample::v, true)};
+  return figure;
+}
+
+Figure MakeRatesFigure(const CsvTable& rates) {
+  Panel panel;
+  panel.y_label = "Hz";
+  panel.x_label = "voxels per side";
+  panel.log_y = true;
+  panel.title = "Rates on one core (rings: published)";
+  std::vector<Series> rings;
+  int color = 0;
+  for (const Rate& rate : kRates) {
+    Series ours, theirs;
+    ours.title = rate.words;
+    theirs.style = Series::Style::kOpenPoints;
+    ours.color = theirs.color = color++;
+    const auto their_column = rates.Find(rate.published);
+    for (std::size_t row = 0; row < rates.num_rows(); ++row) {
+      const double voxels = rates.At(row, 0).value();
+      ours.x.push_back(voxels);
+      ours.y.push_back(rates.At(row, rates.Find(rate.column).value()).value());
+      if (!their_column || !rates.At(row, *their_column)) continue;
+      theirs.x.push_back(voxels);
+      theirs.y.push_back(*rates.At(row, *their_column));
+    }
+    panel.series.push_back(std::move(ours));
+    if (!theirs.x.empty()) rings.push_back(std::move(theirs));
+  }
+  if (rings.empty()) panel.title = "Rates on one core";
+  panel.series.insert(panel.series.end(), rings.begin(), rings.end());
+  Figure figure;
+  figure.panels = {std::move(panel)};
+  figure.panel_width_px = 720;
+  figure.panel_height_px = 520;
+  return figure;
+}
+
+std::string DescribeClosedLoop(const ClosedLoopStudy& study, const PublishedRates& published) {
+  std::string text = TextTable({kRunHeader, RunCells("execute and update", study.update),
+                                RunCells("prediction", study.prediction)}) +
+                     "\nrates (published)\n" +
+                     TextTable(RateRows(MakeRatesTable(study, published))) +
+                     "\n435 predictions in each of five scenes, 96 voxels a side [ms]\n";
+  std::vector<std::vector<std::string>> rows = {{"", "least", "median", "mean", "greatest"}};
+  for (const Summary& summary : SummariseWholeRun(study.whole_run)) rows.push_back(Cells(summary));
+  for (const Summary& summary : kPublishedWholeRun) {
+    rows.push_back(Cells(summary));
+    rows.back()[0] = "published: " + rows.back()[0];
+  }
+  return text + TextTable(rows);
+}
+
+std::string MakeClosedLoopPage(const ClosedLoopOptions& options, const ClosedLoopStudy& study,
+                               const PublishedRates& published, const std::string& joints_svg,
+                               const std::string& rates_svg) {
+  HtmlPage page("closed_loop: the published closed-loop study");
+  page.Paragraph(
+      "After M. Finean, W. Merkt, I. Havoutis, \"Predicted Composite Signed-Distance Fields for "
+      "Real-Time Motion Planning in Dynamic Environments\", ICAPS 2021. A Panda on one table "
+      "reaches for another while an HSR drives through between them at " +
+      Format("%g m/s", options.speed_m_s) +
+      ". The loop is this product's own: predictions hold for the right moments, plans take effect "
+      "after their latency, and a tracker within the arm's limits follows them.");
+  page.Table(kRunHeader, {RunCells("execute and update", study.update),
+                          RunCells("prediction", study.prediction)});
+  if (!joints_svg.empty()) {
+    page.Picture(joints_svg,
+                 "Measured joint positions and velocities, execute and update (left) "
+                 "and prediction (right).");
+  }
+  page.Heading("Rates");
+  page.Paragraph(
+      "Update rate: one over the CPU time of a planning cycle, from the observation to the plan, "
+      "of "
+      "the shortest, the median and the longest cycle of a run. Prediction rate: one over the "
+      "median "
+      "time of making the field of one later step. In brackets and as rings the stored figures of "
+      "the authors, of another machine.");
+  if (!rates_svg.empty()) page.Picture(rates_svg, "Rates over the size of the grid.");
+  const auto rates = RateRows(MakeRatesTable(study, published));
+  page.Table(rates.front(), {rates.begin() + 1, rates.end()});
+  page.Heading("The predictions of a whole run");
+  page.Paragraph(
+      "Each step from the second on predicts the fields of all the steps that remain: 435 in a "
+      "run, "
+      "in each of the five field scenes, at 96 voxels a side. Times in ms.");
+  std::vector<std::vector<std::string>> rows;
+  for (const Summary& summary : SummariseWholeRun(study.whole_run)) rows.push_back(Cells(summary));
+  for (const Summary& summary : kPublishedWholeRun) {
+    rows.push_back(Cells(summary));
+    rows.back()[0] = "published: " + rows.back()[0];
+  }
+  page.Table({"", "least", "median", "mean", "greatest"}, rows);
+  return page.ToText();
+}
+
+}  // namespace sidestep

@@ -1,0 +1,266 @@
+#include "bench/reproduce/open_loop_report.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "bench/report/html_page.h"
+
+namespace sidestep {
+namespace {
+
+constexpr double kPercent = 100;
+
+std::string Words(Knowledge knowledge) {
+  std::string words = ToString(knowledge);
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
+std::string Of(int part, int all) { return std::to_string(part) + " / " + std::to_string(all); }
+
+std::string Between(const char* format, const Interval& interval, double scale = 1) {
+  return "[" + Format(format, scale * interval.low) + ", " + Format(format, scale * interval.high) +
+         "]";
+}
+
+struct Curves {
+  Series rate, cost;
+};
+
+// One point a speed.
+Curves MakeCurves(const std::vector<MatchedOutcomes>& rows, Knowledge knowledge) {
+  struct Sums {
+    int rows = 0, free = 0;
+    double gp_cost = 0;
+  };
+  std::map<double, Sums> by_speed;
+  for (const MatchedOutcomes& row : rows) {
+    const auto run = row.runs.find(knowledge);
+    if (run == row.runs.end()) continue;
+    Sums& sums = by_speed[row.speed_m_s];
+    ++sums.rows;
+    sums.free += run->second.is_free ? 1 : 0;
+    sums.gp_cost += run->second.gp_cost;
+  }
+  Curves curves;
+  for (const auto& [speed_m_s, sums] : by_speed) {
+    const Interval wilson = WilsonInterval(sums.free, sums.rows);
+    curves.rate.x.push_back(speed_m_s);
+    curves.rate.y.push_back(kPercent * sums.free / sums.rows);
+    curves.rate.low.push_back(kPercent * wilson.low);
+    curves.rate.high.push_back(kPercent * wilson.high);
+    curves.cost.x.push_back(speed_m_s);
+    curves.cost.y.push_back(sums.gp_cost / sums.rows);
+  }
+  curves.rate.color = curves.cost.color = static_cast<int>(knowledge);
+  return curves;
+}
+
+void AddCurves(Figure& figure, const std::vector<MatchedOutcomes>& rows, bool is_published) {
+  for (const Knowledge knowledge : kAllKnowledge) {
+    Curves curves = MakeCurves(rows, knowledge);
+    if (curves.rate.x.empty()) continue;
+    for (Series* series : {&curves.rate, &curves.cost}) {
+      if (is_published) {
+        series->style = Series::Style::kOpenPoints;
+        series->low.clear();
+        series->high.clear();
+      } else {
+        series->title = Words(knowledge);
+      }
+    }
+    figure.panels[0].series.push_back(std::move(curves.rate));
+    figure.panels[1].series.push_back(std::move(curves.cost));
+  }
+}
+
+std::string DescribeSetup(const OpenLoopExperiment& experiment,
+                          const OpenLoopStudyOptions& options) {
+  std::string text =
+      "sigma_obs " + Format("%g", experiment.sigma_obs) + ", epsilon " +
+      Format("%g m", experiment.epsilon_m) + ", " + std::to_string(experiment.num_interpolated) +
+      " interpolated obstacle costs an interval, " + std::to_string(experiment.speeds_m_s.size()) +
+      " speeds from " + Format("%g", experiment.speeds_m_s.front()) + " to " +
+      Format("%g m/s", experiment.speeds_m_s.back()) + ". ";
+  text += options.once ? "Static and full knowledge are solved once. "
+                       : "Each motion is solved as often as it has states, pinning one more state "
+                         "each time. ";
+  text += options.intended_geometry
+              ? "Static boxes stand where they were meant to (not as published)."
+              : "Static boxes stand one cell low, as in the published maps.";
+  return text;
+}
+
+std::string DescribeIgnored(const std::vector<int>& spheres) {
+  std::string text =
+      "Ignored in planning and in both verdicts, because they overlap what the robot "
+      "stands on: sphere";
+  for (const int s : spheres) text += " " + std::to_string(s);
+  return text + ".";
+}
+
+void AddPublished(HtmlPage& page, const TableComparison& comparison) {
+  page.Heading("Against the published table");
+  page.Paragraph("Counts of colliding states agree in " +
+                 std::to_string(comparison.CountsAgreeing()) + " of " +
+                 std::to_string(comparison.CountsCompared()) + " entries of " +
+                 std::to_string(comparison.rows_compared) +
+                 " rows. Costs agree if they differ by "
+                 "no more than a millionth.");
+  std::vector<std::vector<std::string>> rows;
+  for (const ColumnComparison& column : comparison.columns) {
+    rows.push_back({column.column, Of(column.agreeing, column.compared),
+                    Format("%.2g", column.largest_relative_difference),
+                    Format("%.6g", column.mean_ours), Format("%.6g", column.mean_published)});
+  }
+  page.Table({"column", "agree", "largest relative difference", "our mean", "published mean"},
+             rows);
+  if (comparison.differences.empty()) return;
+  page.Paragraph("Entries that differ:");
+  rows.clear();
+  for (const EntryDifference& entry : comparison.differences) {
+    rows.push_back({entry.column, std::to_string(entry.pair), Format("%g", entry.speed_m_s),
+                    Format("%.9g", entry.ours), Format("%.9g", entry.published)});
+  }
+  page.Table({"column", "pair", "m/s", "ours", "published"}, rows);
+}
+
+void AddVerdicts(HtmlPage& page, const OpenLoopStudy& study) {
+  page.Heading("Is collision-free free?");
+  page.Paragraph(
+      "The published verdict looks at the support states alone, in the voxel field that planned, "
+      "and takes everything outside the grid as free. Here the same motions are judged by the "
+      "exact "
+      "boxes where they were meant to stand, at the states and then every 5 ms between them.");
+  std::vector<std::vector<std::string>> rows;
+  for (const VerdictCounts& counts : CountVerdicts(study)) {
+    rows.push_back({Words(counts.knowledge), Of(counts.free, counts.num_rows),
+                    std::to_string(counts.truly_free_states), std::to_string(counts.truly_free),
+                    Format("%.0f mm", 1e3 * counts.deepest_m)});
+  }
+  page.Table({"planner knows", "free, as published", "free of the true boxes at the states",
+              "and between them", "deepest hit of a row called free"},
+             rows);
+}
+
+void AddRates(HtmlPage& page, const OpenLoopStatistics& statistics) {
+  std::vector<std::vector<std::string>> rows;
+  for (const FreeRate& rate : statistics.pooled) {
+    rows.push_back({Words(rate.knowledge), Of(rate.num_free, rate.num_rows),
+                    Format("%.1f %%", kPercent * rate.num_free / rate.num_rows),
+                    Between("%.1f", rate.wilson, kPercent), Format("%.2f", rate.mean_gp_cost)});
+  }
+  page.Table({"planner knows", "free", "rate", "Wilson 95 %", "mean GP cost"}, rows);
+}
+
+void AddComparisons(HtmlPage& page, const OpenLoopStatistics& statistics) {
+  std::vector<std::vector<std::string>> rows;
+  for (const KnowledgeComparison& c : statistics.comparisons) {
+    const auto significant = [&](double (*p)(const SpeedComparison&)) {
+      const auto count = std::count_if(c.speeds.begin(), c.speeds.end(),
+                                       [p](const SpeedComparison& s) { return p(s) < 0.05; });
+      return Of(static_cast<int>(count), static_cast<int>(c.speeds.size()));
+    };
+    rows.push_back(
+        {Words(c.first) + " minus " + Words(c.second),
+         std::to_string(c.only_first_free) + " : " + std::to_string(c.only_second_free),
+         Format("%+.1f", kPercent * c.rate_difference) + " " +
+             Between("%.1f", c.rate_interval, kPercent),
+         significant([](const SpeedComparison& s) { return s.mcnemar_p_holm; }),
+         Format("%+.2f", c.median_cost_difference) + " " + Between("%.2f", c.cost_interval),
+         significant([](const SpeedComparison& s) { return s.all.p_holm; }),
+         significant([](const SpeedComparison& s) { return s.both_free.p_holm; })});
+  }
+  page.Table({"matched by start, goal and speed", "only one free", "points of free rate",
+              "McNemar, speeds", "median GP cost", "Wilcoxon, speeds", "of both free"},
+             rows);
+}
+
+void AddStatistics(HtmlPage& page, const std::vector<OpenLoopStatistics>& statistics) {
+  page.Heading("Statistics");
+  page.Paragraph(
+      "Brackets hold 95 %: Wilson's for rates; for differences a bootstrap over pairs of start and "
+      "goal, whose rows at different speeds resemble each other. \"Speeds\" counts at how many of "
+      "them a two-sided test gives p < 0.05 after Holm's adjustment over the speeds: McNemar's "
+      "exact "
+      "test of the outcomes, Wilcoxon's signed ranks of the costs, of all rows and of those in "
+      "which "
+      "both are free. Every figure, with the Hodges-Lehmann shift at each speed, is in "
+      "statistics.json.");
+  for (const OpenLoopStatistics& filtered : statistics) {
+    page.Paragraph("Filter " + ToString(filtered.filter) + ": " +
+                   std::to_string(filtered.num_rows) + " rows; excluded " +
+                   std::to_string(filtered.excluded_by_speed) + " by their speed and " +
+                   std::to_string(filtered.excluded_none_free) +
+                   " in which no published kind of knowledge is free.");
+    if (filtered.num_rows == 0) continue;
+    AddRates(page, filtered);
+    AddComparisons(page, filtered);
+  }
+}
+
+}  // namespace
+
+std::vector<VerdictCounts> CountVerdicts(const OpenLoopStudy& study) {
+  std::map<Knowledge, VerdictCounts> counts;
+  for (const OpenLoopRow& row : study.rows) {
+    for (const auto& [knowledge, entry] : row.cases) {
+      VerdictCounts& sums = counts[knowledge];
+      sums.knowledge = knowledge;
+      ++sums.num_rows;
+      sums.mean_gp_cost += entry.result.gp_cost;
+      if (entry.result.colliding_states != 0) continue;
+      ++sums.free;
+      sums.truly_free_states += entry.clearance.states_m > 0 ? 1 : 0;
+      // A motion has its states too.
+      sums.truly_free += entry.clearance.motion_m() > 0 ? 1 : 0;
+      sums.deepest_m = std::max(sums.deepest_m, -entry.clearance.motion_m());
+    }
+  }
+  std::vector<VerdictCounts> list;
+  for (auto& [knowledge, sums] : counts) {
+    sums.mean_gp_cost /= sums.num_rows;
+    list.push_back(sums);
+  }
+  return list;
+}
+
+Figure MakeOpenLoopFigure(const std::vector<MatchedOutcomes>& ours,
+                          const std::vector<MatchedOutcomes>& published) {
+  Figure figure;
+  figure.columns = 2;
+  const std::string rings = published.empty() ? "" : " (rings: published)";
+  figure.panels = {
+      {"Collision-free" + rings, "speed of the obstacle [m/s]", "%", false, {-3, 103}, {}},
+      {"Mean GP cost" + rings, "speed of the obstacle [m/s]", "GP cost", true, {}, {}}};
+  AddCurves(figure, ours, false);
+  AddCurves(figure, published, true);
+  return figure;
+}
+
+std::string MakeOpenLoopPage(const OpenLoopExperiment& experiment,
+                             const OpenLoopStudyOptions& options, const OpenLoopStudy& study,
+                             const std::optional<PublishedComparison>& published,
+                             const std::vector<OpenLoopStatistics>& statistics,
+                             const std::string& svg_path) {
+  HtmlPage page(experiment.name + ": the published open-loop experiment");
+  page.Paragraph(
+      "After M. Finean, W. Merkt, I. Havoutis, \"Predicted Composite Signed-Distance Fields for "
+      "Real-Time Motion Planning in Dynamic Environments\", ICAPS 2021. An arm moves from rest to "
+      "rest in 3 s while a box moves through its workspace. The same planner runs under several "
+      "kinds of knowledge of that box, so that a difference shows what the knowledge is worth.");
+  page.Paragraph(DescribeSetup(experiment, options));
+  if (!study.ignored_spheres.empty()) page.Paragraph(DescribeIgnored(study.ignored_spheres));
+  if (!svg_path.empty()) {
+    page.Picture(svg_path,
+                 "Collision-free rate by the published verdict, with Wilson's 95 % "
+                 "intervals as bands, and mean GP cost, over the obstacle's speed.");
+  }
+  if (published) AddPublished(page, published->table);
+  AddVerdicts(page, study);
+  AddStatistics(page, statistics);
+  return page.ToText();
+}
+
+}  // namespace sidestep

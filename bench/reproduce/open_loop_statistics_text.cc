@@ -1,0 +1,129 @@
+#include "bench/reproduce/open_loop_statistics_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace sidestep {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kSignificant = 0.05;
+
+Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json Bounds(const Interval& interval) { return {Number(interval.low), Number(interval.high)}; }
+
+Json ToJson(const FreeRate& rate) {
+  return {{"knowledge", ToString(rate.knowledge)},
+          {"rows", rate.num_rows},
+          {"free", rate.num_free},
+          {"free_rate_wilson_95", Bounds(rate.wilson)},
+          {"mean_gp_cost", Number(rate.mean_gp_cost)}};
+}
+
+Json ToJson(const CostComparison& costs) {
+  return {{"rows", costs.num_rows},
+          {"rows_without_finite_cost", costs.num_not_finite},
+          {"hodges_lehmann_shift", Number(costs.shift)},
+          {"wilcoxon_p", costs.p},
+          {"wilcoxon_p_holm", costs.p_holm}};
+}
+
+Json ToJson(const SpeedComparison& speed) {
+  return {{"speed_m_per_s", speed.speed_m_s},
+          {"rows", speed.num_rows},
+          {"only_first_free", speed.only_first_free},
+          {"only_second_free", speed.only_second_free},
+          {"mcnemar_p", speed.mcnemar_p},
+          {"mcnemar_p_holm", speed.mcnemar_p_holm},
+          {"gp_cost", ToJson(speed.all)},
+          {"gp_cost_where_both_free", ToJson(speed.both_free)}};
+}
+
+Json ToJson(const KnowledgeComparison& comparison) {
+  Json json = {{"first", ToString(comparison.first)},
+               {"second", ToString(comparison.second)},
+               {"rows", comparison.num_rows},
+               {"only_first_free", comparison.only_first_free},
+               {"only_second_free", comparison.only_second_free},
+               {"free_rate_difference", comparison.rate_difference},
+               {"free_rate_difference_bootstrap_95", Bounds(comparison.rate_interval)},
+               {"median_gp_cost_difference", Number(comparison.median_cost_difference)},
+               {"median_gp_cost_difference_bootstrap_95", Bounds(comparison.cost_interval)},
+               {"by_speed", Json::array()}};
+  for (const SpeedComparison& speed : comparison.speeds) json["by_speed"].push_back(ToJson(speed));
+  return json;
+}
+
+Json ToJson(const OpenLoopStatistics& statistics) {
+  Json json = {{"filter", ToString(statistics.filter)},
+               {"rows", statistics.num_rows},
+               {"rows_excluded_by_speed", statistics.excluded_by_speed},
+               {"rows_excluded_none_free", statistics.excluded_none_free},
+               {"all_speeds", Json::array()},
+               {"by_speed", Json::array()},
+               {"comparisons", Json::array()}};
+  for (const FreeRate& rate : statistics.pooled) json["all_speeds"].push_back(ToJson(rate));
+  for (const FreeRate& rate : statistics.by_speed) {
+    json["by_speed"].push_back(ToJson(rate));
+    json["by_speed"].back()["speed_m_per_s"] = rate.speed_m_s;
+  }
+  for (const KnowledgeComparison& comparison : statistics.comparisons) {
+    json["comparisons"].push_back(ToJson(comparison));
+  }
+  return json;
+}
+
+template <class... Values>
+std::string Print(const char* format, Values... values) {
+  char text[256];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+template <class P>
+int CountSignificant(const KnowledgeComparison& comparison, const P& p_holm) {
+  return static_cast<int>(
+      std::count_if(comparison.speeds.begin(), comparison.speeds.end(),
+                    [&](const SpeedComparison& speed) { return p_holm(speed) < kSignificant; }));
+}
+
+}  // namespace
+
+std::string ToJson(const std::vector<OpenLoopStatistics>& statistics) {
+  Json json = Json::array();
+  for (const OpenLoopStatistics& filtered : statistics) json.push_back(ToJson(filtered));
+  return json.dump(2) + "\n";
+}
+
+std::string Describe(const OpenLoopStatistics& statistics) {
+  std::string text = Print("%s: %d rows", ToString(statistics.filter).c_str(), statistics.num_rows);
+  if (statistics.excluded_by_speed + statistics.excluded_none_free > 0) {
+    text += Print(" (excluded: %d by speed, %d in which none is free)",
+                  statistics.excluded_by_speed, statistics.excluded_none_free);
+  }
+  text += '\n';
+  for (const FreeRate& rate : statistics.pooled) {
+    text +=
+        Print("  %-20s free %4d of %4d, %5.1f %% [%.1f, %.1f]\n", ToString(rate.knowledge).c_str(),
+              rate.num_free, rate.num_rows, 100.0 * rate.num_free / rate.num_rows,
+              100 * rate.wilson.low, 100 * rate.wilson.high);
+  }
+  for (const KnowledgeComparison& c : statistics.comparisons) {
+    const int num_speeds = static_cast<int>(c.speeds.size());
+    text += Print("  %s - %s\n", ToString(c.first).c_str(), ToString(c.second).c_str());
+    text += Print("    free    %+8.1f points [%+.1f, %+.1f]; McNemar p < 0.05 at %d of %d speeds\n",
+                  100 * c.rate_difference, 100 * c.rate_interval.low, 100 * c.rate_interval.high,
+                  CountSignificant(c, [](const SpeedComparison& s) { return s.mcnemar_p_holm; }),
+                  num_speeds);
+    text += Print("    GP cost %+8.2f median [%+.2f, %+.2f]; Wilcoxon p < 0.05 at %d of %d\n",
+                  c.median_cost_difference, c.cost_interval.low, c.cost_interval.high,
+                  CountSignificant(c, [](const SpeedComparison& s) { return s.all.p_holm; }),
+                  num_speeds);
+  }
+  return text;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "sdf/world_model.h"
+
+namespace sidestep {
+
+/// How the published files name their columns: the pair, the speed, and then PREFIX + CASE.
+inline constexpr const char* kPairColumn = "pair";
+inline constexpr const char* kSpeedColumn = "speed_m_per_s";
+inline constexpr const char* kCollidingPrefix = "n_colliding_states_";
+inline constexpr const char* kGpCostPrefix = "gp_cost_";
+inline constexpr const char* kObstacleCostPrefix = "obstacle_cost_";
+
+struct PublishedCase {
+  Knowledge knowledge;
+  const char* name;
+  bool is_published;  ///< false: the case is ours
+};
+/// In the order of the published files, then ours.
+inline constexpr PublishedCase kPublishedCases[] = {
+    {Knowledge::kStatic, "static", true},
+    {Knowledge::kExecuteAndUpdate, "execute_update", true},
+    {Knowledge::kFullKnowledge, "full_knowledge", true},
+    {Knowledge::kPrediction, "prediction", false}};
+
+}  // namespace sidestep

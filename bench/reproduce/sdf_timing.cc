@@ -1,0 +1,269 @@
+#include "bench/reproduce/sdf_timing.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+#include "bench/report/html_page.h"
+#include "bench/statistics.h"
+
+namespace sidestep {
+namespace {
+
+constexpr double kMargin_m = 0.2;
+constexpr EpisodeTime kFirstSeen(0.2), kSecondSeen(0.6);
+constexpr int kMoments = 31;
+
+constexpr const char* kVoxels = "voxels_per_side";
+
+// A measure of each prediction, and what the published file calls the mean of the same thing.
+struct Measure {
+  const char* name;
+  const char* words;
+  const char* published;  // empty: not published
+  double PredictionTimes::*value;
+};
+constexpr Measure kMeasures[] = {
+    {"full_computation_ms", "full computation", "full_computation_mean_ms",
+     &PredictionTimes::full_s},
+    {"dense_composite_ms", "dense composite", "composite_prediction_mean_ms",
+     &PredictionTimes::dense_s},
+    {"lazy_composite_ms", "lazy composite, making it", "", &PredictionTimes::lazy_s},
+    {"lazy_query_ms", "lazy composite, a query", "", &PredictionTimes::query_s},
+};
+constexpr const char* kInit = "composite_init_ms";
+constexpr const char* kPublishedInit = "composite_init_mean_ms";
+
+std::string Name(const char* measure, const char* statistic) {
+  return std::string(measure) + "_" + statistic;
+}
+
+void AppendQuantiles(std::vector<std::optional<double>>& row, const std::vector<double>& values_s) {
+  for (const double p : {0.5, 0.1, 0.9}) row.emplace_back(1e3 * Quantile(values_s, p));
+}
+
+double Get(const CsvTable& table, std::size_t row, const std::string& column) {
+  return table.At(row, table.Find(column).value()).value();
+}
+
+// The published figure for a grid of the same size.
+std::optional<double> Published(const std::optional<CsvTable>& published, double voxels,
+                                const std::string& column) {
+  if (!published || column.empty()) return {};
+  const auto key = published->Find(kVoxels), value = published->Find(column);
+  if (!key || !value) return {};
+  for (std::size_t row = 0; row < published->num_rows(); ++row) {
+    if (published->At(row, *key) == voxels) return published->At(row, *value);
+  }
+  return {};
+}
+
+std::string FormatTime(double ms) {
+  if (ms >= 1) return Format("%.3g ms", ms);
+  if (ms >= 1e-3) return Format("%.3g us", 1e3 * ms);
+  return Format("%.0f ns", 1e6 * ms);
+}
+
+// What the table shows of a size: medians, in brackets the published means.
+struct Entry {
+  std::string words, text;
+};
+std::vector<Entry> Entries(const CsvTable& ours, std::size_t row,
+                           const std::optional<CsvTable>& published) {
+  const double voxels = Get(ours, row, kVoxels);
+  const auto text = [&](const char* measure, const std::string& their_column) {
+    std::string cell = FormatTime(Get(ours, row, Name(measure, "median")));
+    if (const auto theirs = Published(published, voxels, their_column)) {
+      cell += " (" + Format("%.3g", *theirs) + ")";
+    }
+    return cell;
+  };
+  std::vector<Entry> entries = {{"initialisation", text(kInit, kPublishedInit)}};
+  for (const Measure& measure : kMeasures) {
+    entries.push_back({measure.words, text(measure.name, measure.published)});
+  }
+  const auto ratio = [&](const char* measure) {
+    return Format("%.3g", Get(ours, row, "full_computation_ms_median") /
+                              Get(ours, row, Name(measure, "median")));
+  };
+  entries.push_back({"full / dense", ratio("dense_composite_ms")});
+  const auto full = Published(published, voxels, "full_computation_mean_ms");
+  const auto dense = Published(published, voxels, "composite_prediction_mean_ms");
+  if (full && dense) entries.back().text += " (" + Format("%.3g", *full / *dense) + ")";
+  return entries;
+}
+
+}  // namespace
+
+std::vector<SdfTimingSize> RunSdfTiming(const SdfTimingOptions& options,
+                                        const std::function<void(int done)>& on_size) {
+  std::vector<SdfTimingSize> sizes;
+  for (const int voxels : options.voxels_per_side) {
+    SdfTimingSize size;
+    const GridSpec grid = PublishedTimingGrid(voxels);
+    size.voxels_per_side = voxels;
+    size.cell_m = grid.cell_m;
+    for (const std::string& name : options.scenes) {
+      const FieldScene scene = MakeFieldScene(name);
+      for (int repeat = 0; repeat < options.repeats; ++repeat) {
+        FieldTimer timer(scene, grid, kMargin_m, kFirstSeen, kSecondSeen);
+        size.init_s.push_back(timer.init_s());
+        for (int moment = 0; moment < kMoments; ++moment) {
+          const EpisodeTime t(moment / 10.0);
+          size.predictions.push_back(timer.Time(t));
+          if (repeat > 0 || !timer.HoldsAllObjects(t)) continue;
+          const CompositeError error = timer.Compare(t);
+          ++size.num_compared;
+          size.largest_error.free_m = std::max(size.largest_error.free_m, error.free_m);
+          size.largest_error.inside_m = std::max(size.largest_error.inside_m, error.inside_m);
+        }
+      }
+    }
+    sizes.push_back(std::move(size));
+    if (on_size) on_size(static_cast<int>(sizes.size()));
+  }
+  return sizes;
+}
+
+CsvTable MakeSdfTimingTable(const std::vector<SdfTimingSize>& sizes) {
+  std::vector<std::string> columns = {kVoxels, "cell_size_m", "n_predictions", "n_init_values"};
+  const auto add_columns = [&columns](const char* measure) {
+    for (const char* const statistic : {"median", "q10", "q90"}) {
+      columns.push_back(Name(measure, statistic));
+    }
+  };
+  add_columns(kInit);
+  for (const Measure& measure : kMeasures) add_columns(measure.name);
+  columns.insert(columns.end(), {"n_compared", "largest_error_free_m", "largest_error_inside_m"});
+  CsvTable table(columns);
+  for (const SdfTimingSize& size : sizes) {
+    std::vector<std::optional<double>> row = {size.voxels_per_side, size.cell_m,
+                                              static_cast<double>(size.predictions.size()),
+                                              static_cast<double>(size.init_s.size())};
+    AppendQuantiles(row, size.init_s);
+    for (const Measure& measure : kMeasures) {
+      std::vector<double> values_s;
+      for (const PredictionTimes& times : size.predictions) {
+        values_s.push_back(times.*measure.value);
+      }
+      AppendQuantiles(row, values_s);
+    }
+    row.insert(row.end(),
+               {size.num_compared, size.largest_error.free_m, size.largest_error.inside_m});
+    table.AddRow(std::move(row));
+  }
+  return table;
+}
+
+Figure MakeSdfTimingFigure(const CsvTable& ours, const std::optional<CsvTable>& published) {
+  Panel panel;
+  panel.title = "Cost of a field on one core";
+  if (published) panel.title += " (rings: published)";
+  panel.x_label = "voxels per side";
+  panel.y_label = "ms";
+  panel.log_y = true;
+  std::vector<Series> rings;
+  int color = 0;
+  const auto add = [&](const char* measure, const char* words, const char* their_column) {
+    Series curve, theirs;
+    curve.title = words;
+    theirs.style = Series::Style::kOpenPoints;
+    curve.color = theirs.color = color++;
+    for (std::size_t row = 0; row < ours.num_rows(); ++row) {
+      const double voxels = Get(ours, row, kVoxels);
+      curve.x.push_back(voxels);
+      curve.y.push_back(Get(ours, row, Name(measure, "median")));
+      curve.low.push_back(Get(ours, row, Name(measure, "q10")));
+      curve.high.push_back(Get(ours, row, Name(measure, "q90")));
+      if (const auto value = Published(published, voxels, their_column)) {
+        theirs.x.push_back(voxels);
+        theirs.y.push_back(*value);
+      }
+    }
+    panel.series.push_back(std::move(curve));
+    if (!theirs.x.empty()) rings.push_back(std::move(theirs));
+  };
+  add(kInit, "initialisation", kPublishedInit);
+  for (const Measure& measure : kMeasures) add(measure.name, measure.words, measure.published);
+  panel.series.insert(panel.series.end(), rings.begin(), rings.end());
+  Figure figure;
+  figure.panels = {std::move(panel)};
+  figure.panel_width_px = 720;
+  figure.panel_height_px = 520;
+  return figure;
+}
+
+std::string DescribeSdfTiming(const CsvTable& ours, const std::optional<CsvTable>& published) {
+  std::string text = "medians";
+  text += published ? " (in brackets the published means, ms)\n" : "\n";
+  for (std::size_t row = 0; row < ours.num_rows(); ++row) {
+    char line[128];
+    std::snprintf(line, sizeof line, "%.0f voxels a side, %g m\n", Get(ours, row, kVoxels),
+                  Get(ours, row, "cell_size_m"));
+    text += line;
+    for (const Entry& entry : Entries(ours, row, published)) {
+      std::snprintf(line, sizeof line, "  %-28s %s\n", entry.words.c_str(), entry.text.c_str());
+      text += line;
+    }
+    std::snprintf(line, sizeof line,
+                  "  %-28s %g m in free space, %g m inside obstacles (%.0f fields)\n",
+                  "composite off the exact by", Get(ours, row, "largest_error_free_m"),
+                  Get(ours, row, "largest_error_inside_m"), Get(ours, row, "n_compared"));
+    text += line;
+  }
+  return text;
+}
+
+std::string MakeSdfTimingPage(const SdfTimingOptions& options, const CsvTable& ours,
+                              const std::optional<CsvTable>& published,
+                              const std::string& svg_path) {
+  HtmlPage page("sdf_timing: what a predicted distance field costs");
+  page.Paragraph(
+      "After table 1 of M. Finean, W. Merkt, I. Havoutis, \"Predicted Composite Signed-Distance "
+      "Fields for Real-Time Motion Planning in Dynamic Environments\", ICAPS 2021. Objects are "
+      "seen "
+      "twice and predicted at 31 moments. The field of each moment is computed anew from the "
+      "predicted map (full computation), or composed of the fields of the static part and the "
+      "objects: as a grid (dense, as in the paper), or when it is asked (lazy).");
+  std::string scenes;
+  for (const std::string& name : options.scenes) scenes += (scenes.empty() ? "" : ", ") + name;
+  page.Paragraph("Scenes: " + scenes +
+                 ". Times are CPU times of one core, medians over scenes, "
+                 "moments and " +
+                 std::to_string(options.repeats) + " repeats.");
+  if (published) {
+    page.Paragraph(
+        "In brackets the published means in ms, of MATLAB's bwdist on another machine: "
+        "compare the ratios, not the times.");
+  }
+  if (!svg_path.empty()) {
+    page.Picture(svg_path, "Medians with 10 % and 90 % quantiles as bands, over the grid's size.");
+  }
+  std::vector<std::string> header = {"voxels a side"};
+  std::vector<std::vector<std::string>> rows, errors;
+  for (std::size_t row = 0; row < ours.num_rows(); ++row) {
+    rows.push_back({Format("%.0f", Get(ours, row, kVoxels))});
+    errors.push_back({rows.back().front(), Format("%.0f", Get(ours, row, "n_compared")),
+                      Format("%g", Get(ours, row, "largest_error_free_m")),
+                      Format("%g", Get(ours, row, "largest_error_inside_m"))});
+    for (const Entry& entry : Entries(ours, row, published)) {
+      if (row == 0) header.push_back(entry.words);
+      rows.back().push_back(entry.text);
+    }
+  }
+  page.Table(header, rows);
+  page.Heading("Is the composite the same field?");
+  page.Paragraph(
+      "At cell centres, where objects are moved by whole cells, the composite equals the exact "
+      "field "
+      "in all free cells within the margin. Inside obstacles that touch or overlap it may "
+      "underestimate the depth. Compared where every object lies wholly in the grid: beyond it, "
+      "the "
+      "composite knows more than the grid.");
+  page.Table({"voxels a side", "fields compared", "largest difference in free cells [m]",
+              "inside obstacles [m]"},
+             errors);
+  return page.ToText();
+}
+
+}  // namespace sidestep

@@ -1,0 +1,171 @@
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "bench/reproduce/open_loop_experiment.h"
+#include "bench/reproduce/open_loop_report.h"
+#include "bench/reproduce/open_loop_statistics.h"
+#include "bench/reproduce/open_loop_statistics_text.h"
+#include "bench/reproduce/open_loop_study.h"
+#include "bench/reproduce/published_table.h"
+#include "bench/result_file.h"
+#include "cli/data_paths.h"
+#include "cli/number_range.h"
+#include "cli/option_lists.h"
+#include "cli/out_folder.h"
+#include "cli/reproduce.h"
+#include "core/input_error.h"
+#include "sdf/prediction/registry.h"
+
+namespace sidestep {
+namespace {
+
+struct OpenLoopCommand {
+  std::optional<double> sigma_obs, epsilon_m;
+  std::optional<int> num_interpolated;
+  std::string speeds, pairs, cases, predictor;
+  bool once = false, intended_geometry = false;
+  int num_jobs = 1;
+  std::string published, out;
+};
+
+OpenLoopExperiment MakeExperiment(const std::string& name, const OpenLoopCommand& command) {
+  OpenLoopExperiment experiment = MakeOpenLoopExperiment(name);
+  if (command.sigma_obs) experiment.sigma_obs = *command.sigma_obs;
+  if (command.epsilon_m) experiment.epsilon_m = *command.epsilon_m;
+  if (command.num_interpolated) experiment.num_interpolated = *command.num_interpolated;
+  if (!command.speeds.empty()) experiment.speeds_m_s = ParseSpeeds("--speeds", command.speeds);
+  return experiment;
+}
+
+OpenLoopStudyOptions MakeStudyOptions(const OpenLoopCommand& command, int num_pairs) {
+  OpenLoopStudyOptions options;
+  if (!command.cases.empty()) options.cases = ParseKnowledge("--case", command.cases);
+  if (!command.pairs.empty()) options.pairs = ParseNumbers("--pairs", command.pairs, num_pairs);
+  if (!command.predictor.empty()) {
+    try {
+      MakePredictor(command.predictor);
+    } catch (const std::invalid_argument& error) {
+      throw InputError("--predictor", error.what());
+    }
+    options.predictor = command.predictor;
+  }
+  options.once = command.once;
+  options.intended_geometry = command.intended_geometry;
+  options.num_jobs = command.num_jobs;
+  return options;
+}
+
+// One line that is rewritten on a terminal; elsewhere a line at every tenth of the work.
+void ShowProgress(int done, int all) {
+  if (isatty(STDERR_FILENO) != 0) {
+    std::fprintf(stderr, "\r%d of %d rows%s", done, all, done == all ? "\n" : "");
+  } else if (done * 10 / all != (done - 1) * 10 / all) {
+    std::fprintf(stderr, "%d of %d rows\n", done, all);
+  }
+}
+
+void PrintVerdicts(const OpenLoopStudy& study) {
+  std::printf("%-20s %16s %16s %16s %14s\n", "planner knows", "collision-free", "truly free",
+              "truly free", "mean GP cost");
+  std::printf("%-20s %16s %16s %16s\n", "", "as published", "at the states", "all along");
+  for (const VerdictCounts& counts : CountVerdicts(study)) {
+    std::printf("%-20s %8d of %4d %16d %16d %14.4f\n", ToString(counts.knowledge).c_str(),
+                counts.free, counts.num_rows, counts.truly_free_states, counts.truly_free,
+                counts.mean_gp_cost);
+  }
+  std::printf(
+      "(truly free: of the collision-free, those whose spheres clear the exact boxes, which stand\n"
+      "where they were meant to and move between the states)\n");
+  if (!study.ignored_spheres.empty()) {
+    std::string spheres;
+    for (const int s : study.ignored_spheres) spheres += " " + std::to_string(s);
+    std::printf("ignored, for they overlap what the robot stands on: spheres%s\n", spheres.c_str());
+  }
+}
+
+int Run(const std::string& name, const OpenLoopCommand& command) {
+  const OpenLoopExperiment experiment = MakeExperiment(name, command);
+  const OpenLoopStudyOptions options =
+      MakeStudyOptions(command, static_cast<int>(experiment.pairs.size()));
+  // Read before the long work, so that a wrong path is found at once.
+  std::optional<CsvTable> published_table;
+  if (!command.published.empty()) published_table = CsvTable::Read(command.published);
+  const std::string out = MakeOutFolder(command.out.empty() ? "out/" + name : command.out);
+
+  const OpenLoopStudy study =
+      RunOpenLoopStudy(experiment, FindDataPaths().models, options, ShowProgress);
+  const CsvTable table = MakeOpenLoopTable(study);
+  WriteTextFile(out + "/rows.csv", table.ToText());
+  const std::vector<MatchedOutcomes> outcomes = ReadOutcomes(table);
+  std::optional<PublishedComparison> published;
+  if (published_table) {
+    published = {CompareTables(table, *published_table, command.published),
+                 ReadOutcomes(*published_table)};
+  }
+  std::vector<OpenLoopStatistics> statistics;
+  for (const RowFilter filter : {RowFilter::kAllRows, RowFilter::kPublishedExclusions}) {
+    statistics.push_back(ComputeOpenLoopStatistics(outcomes, filter, experiment));
+  }
+  WriteTextFile(out + "/statistics.json", ToJson(statistics));
+
+  PrintVerdicts(study);
+  for (const OpenLoopStatistics& filtered : statistics) {
+    std::printf("\n%s", Describe(filtered).c_str());
+  }
+  if (published) {
+    std::printf("\nagainst %s: %s", command.published.c_str(), Describe(published->table).c_str());
+  }
+  std::printf("\nwritten: %s/rows.csv, %s/statistics.json\n", out.c_str(), out.c_str());
+  const std::string svg = DrawInto(
+      out, "figure",
+      MakeOpenLoopFigure(outcomes, published ? published->outcomes : decltype(outcomes)()));
+  WriteTextFile(out + "/index.html",
+                MakeOpenLoopPage(experiment, options, study, published, statistics, svg));
+  std::printf("written: %s/index.html\n", out.c_str());
+  return !published || published->table.AllCountsAgree() ? 0 : 1;
+}
+
+}  // namespace
+
+void AddReproduceOpenLoop(CommandLine& line, CLI::App& reproduce) {
+  for (const std::string& name : OpenLoopExperimentNames()) {
+    auto options = std::make_shared<OpenLoopCommand>();
+    options->num_jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    CLI::App* const command = reproduce.add_subcommand(
+        name, "Open loop: a table of colliding states and costs, row for row");
+    command->add_option("--published", options->published,
+                        "Compare with this CSV file, row by row; exit 1 if a count differs");
+    command->add_option("--sigma-obs", options->sigma_obs, "Sigma of the obstacle cost")
+        ->check(NumberFrom(1e-6, 1e6));
+    command->add_option("--epsilon", options->epsilon_m, "Safety margin of the obstacle cost [m]")
+        ->check(NumberFrom(0.0, 10.0));
+    command
+        ->add_option("--n-int", options->num_interpolated,
+                     "Obstacle costs between two support states")
+        ->check(NumberFrom(0, 1000));
+    command->add_option("--speeds", options->speeds, "FIRST:LAST:STEP, or one speed [m/s]");
+    command->add_option("--pairs", options->pairs, "Pairs of start and goal, as 1,4-6 [all]");
+    command->add_option("--case", options->cases,
+                        "Kinds of knowledge, comma-separated: static, execute_and_update, "
+                        "full_knowledge, prediction");
+    command->add_option("--predictor", options->predictor,
+                        "How moving things are extrapolated under prediction");
+    command->add_flag("--once", options->once,
+                      "Solve static and full_knowledge once only, as the paper's text says");
+    command->add_flag("--intended-geometry", options->intended_geometry,
+                      "Static boxes where they were meant to be, not one cell low");
+    command->add_option("-j,--jobs", options->num_jobs, "Threads")->check(NumberFrom(1, 1024));
+    command->add_option("--out", options->out, "Folder for the results [out/" + name + "]");
+    command->callback([&line, name, options] { line.exit_code = Run(name, *options); });
+  }
+}
+
+}  // namespace sidestep

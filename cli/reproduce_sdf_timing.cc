@@ -1,0 +1,69 @@
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "bench/reproduce/sdf_timing.h"
+#include "bench/result_file.h"
+#include "cli/number_range.h"
+#include "cli/out_folder.h"
+#include "cli/reproduce.h"
+#include "core/input_error.h"
+
+namespace sidestep {
+namespace {
+
+struct SdfTimingCommand {
+  SdfTimingOptions options;
+  std::string published, out = "out/sdf_timing";
+};
+
+// Every prediction needs three grids of floats: 512 voxels a side are 1.6 GB.
+constexpr int kMostVoxels = 512;
+
+int Run(const SdfTimingCommand& command) {
+  for (const std::string& scene : command.options.scenes) {
+    const std::vector<std::string> known = FieldSceneNames();
+    if (std::find(known.begin(), known.end(), scene) != known.end()) continue;
+    std::string list;
+    for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+    throw InputError("--scenes", "must be of " + list + ", is '" + scene + "'");
+  }
+  std::optional<CsvTable> published;
+  if (!command.published.empty()) published = CsvTable::Read(command.published);
+  const std::string out = MakeOutFolder(command.out);
+
+  const std::size_t num_sizes = command.options.voxels_per_side.size();
+  const CsvTable table = MakeSdfTimingTable(RunSdfTiming(command.options, [&](int done) {
+    std::fprintf(stderr, "%d of %zu sizes\n", done, num_sizes);
+  }));
+  WriteTextFile(out + "/rows.csv", table.ToText());
+  std::printf("%swritten: %s/rows.csv\n", DescribeSdfTiming(table, published).c_str(), out.c_str());
+  const std::string svg = DrawInto(out, "figure", MakeSdfTimingFigure(table, published));
+  WriteTextFile(out + "/index.html", MakeSdfTimingPage(command.options, table, published, svg));
+  std::printf("written: %s/index.html\n", out.c_str());
+  return 0;
+}
+
+}  // namespace
+
+void AddReproduceSdfTiming(CommandLine& line, CLI::App& reproduce) {
+  auto options = std::make_shared<SdfTimingCommand>();
+  CLI::App* const command = reproduce.add_subcommand(
+      "sdf_timing", "Table 1: what a predicted field costs, computed anew or composed");
+  command->add_option("--published", options->published, "A CSV file of published means to show");
+  command
+      ->add_option("--sizes", options->options.voxels_per_side,
+                   "Voxels per side, comma-separated [64,96,...,320]")
+      ->delimiter(',')
+      ->check(NumberFrom(32, kMostVoxels));
+  command->add_option("--scenes", options->options.scenes, "Field scenes, comma-separated [all]")
+      ->delimiter(',');
+  command->add_option("--repeats", options->options.repeats, "How often each is timed [1]")
+      ->check(NumberFrom(1, 1000));
+  command->add_option("--out", options->out, "Folder for the results [out/sdf_timing]");
+  command->callback([&line, options] { line.exit_code = Run(*options); });
+}
+
+}  // namespace sidestep
