@@ -73,7 +73,7 @@ std::string Look(const Series& series) {
 
 void WritePanel(std::ostream& script, const Panel& panel, std::size_t index) {
   script << "set title " << Quoted(panel.title) << "\nset xlabel " << Quoted(panel.x_label)
-         << "\nset ylabel " << Quoted(panel.y_label) << "\n"
+         << " offset 0,0.4\nset ylabel " << Quoted(panel.y_label) << "\n"
          << (panel.log_y ? "set" : "unset") << " logscale y\n";
   if (panel.y_range.size() == 2) {
     script << "set yrange [" << panel.y_range[0] << ":" << panel.y_range[1] << "]\n";
@@ -84,7 +84,7 @@ void WritePanel(std::ostream& script, const Panel& panel, std::size_t index) {
   for (std::size_t i = 0; i < panel.series.size(); ++i) {
     if (panel.series[i].low.empty()) continue;
     script << separator << BlockName(index, i) << " using 1:3:4 with filledcurves fs transparent "
-           << "solid 0.15 noborder lc rgb '" << Color(panel.series[i].color) << "' notitle";
+           << "solid 0.10 noborder lc rgb '" << Color(panel.series[i].color) << "' notitle";
     separator = ", \\\n     ";
   }
   for (std::size_t i = 0; i < panel.series.size(); ++i) {

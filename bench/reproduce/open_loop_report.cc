@@ -100,6 +100,26 @@ std::string DescribeIgnored(const std::vector<int>& spheres) {
   return text + ".";
 }
 
+std::string InShort(const OpenLoopStudy& study,
+                    const std::optional<PublishedComparison>& published) {
+  std::string text = "In short: ";
+  if (published) {
+    text += "the counts of colliding states agree with the published ones in " +
+            std::to_string(published->table.CountsAgreeing()) + " of " +
+            std::to_string(published->table.CountsCompared()) + " entries. ";
+  }
+  text += "Of " + std::to_string(study.rows.size()) +
+          " rows, so many are collision-free by the published verdict, and so many by the exact "
+          "boxes all along the motion: ";
+  std::string separator;
+  for (const VerdictCounts& counts : CountVerdicts(study)) {
+    text += separator + Words(counts.knowledge) + " " + std::to_string(counts.free) + " and " +
+            std::to_string(counts.truly_free);
+    separator = ", ";
+  }
+  return text + ".";
+}
+
 void AddPublished(HtmlPage& page, const TableComparison& comparison) {
   page.Heading("Against the published table");
   page.Paragraph("Counts of colliding states agree in " +
@@ -177,6 +197,18 @@ void AddComparisons(HtmlPage& page, const OpenLoopStatistics& statistics) {
              rows);
 }
 
+// Whether the smallest p that there is, all pairs differing in the same sense, survives Holm's
+// adjustment at some speed.
+bool CanBeSignificant(const OpenLoopStatistics& statistics) {
+  for (const KnowledgeComparison& comparison : statistics.comparisons) {
+    for (const SpeedComparison& speed : comparison.speeds) {
+      const double least_p = McNemarExactP(speed.num_rows, 0);
+      if (least_p * static_cast<double>(comparison.speeds.size()) < 0.05) return true;
+    }
+  }
+  return false;
+}
+
 void AddStatistics(HtmlPage& page, const std::vector<OpenLoopStatistics>& statistics) {
   page.Heading("Statistics");
   page.Paragraph(
@@ -195,6 +227,11 @@ void AddStatistics(HtmlPage& page, const std::vector<OpenLoopStatistics>& statis
                    std::to_string(filtered.excluded_none_free) +
                    " in which no published kind of knowledge is free.");
     if (filtered.num_rows == 0) continue;
+    if (!CanBeSignificant(filtered)) {
+      page.Paragraph(
+          "With so few pairs at so many speeds, no single speed can reach p < 0.05 after "
+          "the adjustment, whatever comes out: look at the intervals.");
+    }
     AddRates(page, filtered);
     AddComparisons(page, filtered);
   }
@@ -251,6 +288,7 @@ std::string MakeOpenLoopPage(const OpenLoopExperiment& experiment,
       "rest in 3 s while a box moves through its workspace. The same planner runs under several "
       "kinds of knowledge of that box, so that a difference shows what the knowledge is worth.");
   page.Paragraph(DescribeSetup(experiment, options));
+  page.Paragraph(InShort(study, published));
   if (!study.ignored_spheres.empty()) page.Paragraph(DescribeIgnored(study.ignored_spheres));
   if (!svg_path.empty()) {
     page.Picture(svg_path,

@@ -2,6 +2,7 @@
 
 #include "bench/reproduce/parallel.h"
 #include "sdf/grid_field.h"
+#include "sdf/map/fast_distance_transform.h"
 
 namespace sidestep {
 
@@ -23,9 +24,10 @@ PublishedMaps::PublishedMaps(const OpenLoopExperiment& experiment, BoxAlignment 
     OccupancyGrid occupancy = static_occupancy_;
     Fill(occupancy, cells);
     // No clamp that would bite: the published fields have none.
-    field = std::make_unique<GridField>(
-        std::make_shared<const SdfGrid>(ComputeSignedDistance(occupancy, convention)),
-        kNoSurfaceDistance_m);
+    field =
+        std::make_unique<GridField>(std::make_shared<const SdfGrid>(FastDistanceTransform().Compute(
+                                        occupancy, {.convention = convention})),
+                                    kNoSurfaceDistance_m);
   });
 }
 
