@@ -1,8 +1,10 @@
 #include <cstdio>
+#include <string>
 
 #include "bench/report/gnuplot.h"
 #include "cli/command.h"
 #include "cli/reproduce.h"
+#include "core/input_error.h"
 
 namespace sidestep {
 
@@ -20,7 +22,16 @@ std::string DrawInto(const std::string& folder, const std::string& name, const F
 void AddReproduceCommand(CommandLine& line) {
   CLI::App* const reproduce = line.app.add_subcommand(
       "reproduce", "Run an experiment of Finean, Merkt & Havoutis (ICAPS 2021) as published");
-  reproduce->require_subcommand(1);
+  // Not required of CLI11, whose complaint would not name the word that was wrong.
+  reproduce->require_subcommand(0, 1);
+  reproduce->callback([reproduce] {
+    if (!reproduce->get_subcommands().empty()) return;
+    std::string names;
+    for (const CLI::App* const experiment : reproduce->get_subcommands({})) {
+      names += (names.empty() ? "" : ", ") + experiment->get_name();
+    }
+    throw InputError("reproduce", "needs one of " + names);
+  });
   AddReproduceOpenLoop(line, *reproduce);
   AddReproduceSdfTiming(line, *reproduce);
   AddReproduceClosedLoop(line, *reproduce);

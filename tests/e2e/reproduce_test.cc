@@ -111,6 +111,19 @@ TEST(Reproduce, DoesWithoutGnuplotAndSaysSo) {
   EXPECT_FALSE(std::filesystem::exists(folder + "/figure.svg"));
 }
 
+TEST(Reproduce, TimesPredictedFieldsInTheScenesAndSizesAskedFor) {
+  const std::string folder = Folder();
+  const Finished finished = Reproduce(
+      {"sdf_timing", "--sizes", "32,48", "--scenes", "field_one_box", "--published",
+       WriteFile(folder + "/published.csv", "voxels_per_side,full_computation_mean_ms\n48,5.25\n"),
+       "--out", folder});
+  EXPECT_EQ(finished.exit_code, 0) << finished.err;
+  EXPECT_THAT(finished.out, AllOf(HasSubstr("48 voxels a side, 0.07 m"), HasSubstr("(5.25)"),
+                                  HasSubstr("composite off the exact by   0 m in free space")));
+  EXPECT_THAT(ReadFile(folder + "/rows.csv"), HasSubstr("voxels_per_side,cell_size_m,"));
+  EXPECT_THAT(ReadFile(folder + "/index.html"), HasSubstr("data:image/svg+xml"));
+}
+
 struct Mistake {
   const char* name;
   std::vector<std::string> arguments;
@@ -131,7 +144,7 @@ TEST_P(ReproduceMistakes, GetOneLineAndExitCodeTwo) {
 INSTANTIATE_TEST_SUITE_P(
     Typical, ReproduceMistakes,
     ::testing::Values(
-        Mistake{"NoExperiment", {}, "subcommand"},
+        Mistake{"NoExperiment", {}, "reproduce: needs one of "},
         Mistake{"UnknownExperiment", {"moon_landing"}, "moon_landing"},
         Mistake{"SpeedsAreTwo", {"panda_hsr", "--speeds", "1:2"}, "--speeds: must be one speed"},
         Mistake{"SpeedIsAWord", {"panda_hsr", "--speeds", "fast"}, "--speeds: 'fast'"},
@@ -142,6 +155,12 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"NoSuchPredictor", {"panda_hsr", "--predictor", "crystal_ball"}, "--predictor: "},
         Mistake{"NegativeSigma", {"panda_hsr", "--sigma-obs", "-1"}, "--sigma-obs"},
         Mistake{"NoSuchTable", {"panda_hsr", "--published", "/nowhere.csv"}, "/nowhere.csv"},
+        Mistake{"NoSuchScene",
+                {"sdf_timing", "--scenes", "field_of_dreams"},
+                "--scenes: must be of field_one_box"},
+        Mistake{"SizeIsTooLarge", {"sdf_timing", "--sizes", "4096"}, "--sizes"},
+        Mistake{
+            "NoSuchRates", {"closed_loop", "--published-loops", "/nowhere.csv"}, "/nowhere.csv"},
         Mistake{"OutIsAFile", {"panda_hsr", "--out", SIDESTEP_PROGRAM}, "--out: "}),
     [](const auto& test) { return std::string(test.param.name); });
 
