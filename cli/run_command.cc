@@ -49,8 +49,8 @@ int Run(const RunOptions& options) {
   overrides.settings = ParseSettings(options.settings);
   const Problem problem = LoadProblem(options.scenario, overrides, paths);
   const std::string out = MakeOutFolder(options.out.empty() ? "out/" + problem.scenario.name + "/" +
-                                                               problem.scenario.knowledge
-                                                         : options.out);
+                                                                  problem.scenario.knowledge
+                                                            : options.out);
   EpisodeResult result = RunEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths));
   const auto versions = Versions();
   for (const auto& [part, version] : versions) {

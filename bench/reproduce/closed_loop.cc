@@ -42,7 +42,8 @@ Scenario PublishedClosedLoop(Scenario scenario, double speed_m_s, int voxels_per
   scenario.epsilon_m = 0.3;
   scenario.sigma_obs = 0.05;
   scenario.num_interpolated = 0;
-  scenario.sensor_rate_hz = scenario.replan_rate_hz;
+  scenario.sensor.rate_hz = scenario.replan_rate_hz;
+  scenario.predictor = "two_frame";
   scenario.grid = ClosedLoopGrid(voxels_per_side);
   for (MovingObstacle& obstacle : scenario.moving_obstacles) {
     std::visit([&](auto& motion) { motion.speed_m_s = speed_m_s; }, obstacle.motion);
