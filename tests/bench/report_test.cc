@@ -13,6 +13,7 @@
 #include "bench/report/gnuplot.h"
 #include "bench/report/html_page.h"
 #include "core/input_error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sidestep {
 namespace {
@@ -56,8 +57,9 @@ TEST(Figure, RefusesColumnsOfDifferentLengths) {
 }
 
 TEST(Figure, IsDrawnAsSvgAndPng) {
-  if (GnuplotVersion().empty()) GTEST_SKIP() << "no gnuplot: " << kGnuplotRemedy;
-  const std::string stem = ::testing::TempDir() + "it's a figure";
+  ASSERT_NE(GnuplotVersion(), "") << kGnuplotRemedy;
+  const TemporaryFolder folder;
+  const std::string stem = folder.path() / "it's a figure";
   ASSERT_TRUE(DrawFigure(Sample(), stem));
   std::ifstream svg(stem + ".svg");
   const std::string text{std::istreambuf_iterator<char>(svg), {}};
@@ -69,7 +71,8 @@ TEST(Figure, IsDrawnAsSvgAndPng) {
 }
 
 TEST(HtmlPage, EscapesTextAndStandsAlone) {
-  const std::string svg = ::testing::TempDir() + "page.svg";
+  const TemporaryFolder folder;
+  const std::string svg = folder.path() / "page.svg";
   std::ofstream(svg) << "<svg id=\"a\">#</svg>\n";
   HtmlPage page("a < b");
   page.Heading("x & y");

@@ -11,18 +11,21 @@
 #include "bench/reproduce/parallel.h"
 #include "bench/reproduce/published_table.h"
 #include "core/input_error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sidestep {
 namespace {
 
-std::string WriteFile(const std::string& text) {
-  const std::string path = ::testing::TempDir() +
-                           ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".csv";
+std::string WriteTable(const TemporaryFolder& folder, const std::string& text) {
+  const std::string path = folder.path() / "table.csv";
   std::ofstream(path, std::ios::binary) << text;
   return path;
 }
 
-CsvTable Parse(const std::string& text) { return CsvTable::Read(WriteFile(text)); }
+CsvTable Parse(const std::string& text) {
+  const TemporaryFolder folder;
+  return CsvTable::Read(WriteTable(folder, text));
+}
 
 TEST(CsvTable, ReadsBackToTheBitWhatItWrites) {
   CsvTable table({"a", "b"});
@@ -57,7 +60,8 @@ TEST(CsvTable, SaysWhereAFileIsBroken) {
            Broken{"a,b\n1,nan\n", ":2: b: must be a finite number, is 'nan'"},
            Broken{"a,b\n1,2x\n", ":2: b: must be a finite number, is '2x'"},
        }) {
-    const std::string path = WriteFile(test.text);
+    const TemporaryFolder folder;
+    const std::string path = WriteTable(folder, test.text);
     try {
       CsvTable::Read(path);
       ADD_FAILURE() << "was accepted: " << test.text;

@@ -10,6 +10,7 @@
 
 #include "bench/metrics/registry.h"
 #include "core/input_error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sidestep {
 namespace {
@@ -28,8 +29,8 @@ Scenario SomeScenario() { return LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/hs
 
 class ResultFile : public ::testing::Test {
  protected:
-  const std::string path_ = (std::filesystem::path(::testing::TempDir()) / "sidestep_result.json");
-  void TearDown() override { std::filesystem::remove(path_); }
+  const TemporaryFolder folder_;
+  const std::string path_ = folder_.path() / "result.json";
 
   std::string Complaint() const {
     try {

@@ -1,6 +1,5 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include "core/input_error.h"
 #include "core/recording.h"
 #include "tests/render/sample_recording.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sidestep {
 namespace {
@@ -19,15 +19,9 @@ using ::testing::HasSubstr;
 
 class RenderCommand : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::filesystem::create_directories(folder_);
-    WriteRecording(MakeSampleRecording({}), trace_);
-  }
-  void TearDown() override {
-    std::filesystem::remove_all(folder_);
-    unsetenv("MUJOCO_GL");
-  }
-  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
+  void SetUp() override { WriteRecording(MakeSampleRecording({}), trace_); }
+  void TearDown() override { unsetenv("MUJOCO_GL"); }
+  std::string Path(const std::string& name) const { return (folder_.path() / name).string(); }
 
   // What is wrong with `sidestep render ARGUMENTS`, or "done".
   static std::string Run(const std::string& arguments) {
@@ -43,8 +37,7 @@ class RenderCommand : public ::testing::Test {
     return line.exit_code == 0 ? "done" : "exit code " + std::to_string(line.exit_code);
   }
 
-  std::filesystem::path folder_ =
-      std::filesystem::path(::testing::TempDir()) / ("render_command_" + std::to_string(getpid()));
+  const TemporaryFolder folder_;
   std::string trace_ = Path("trace.h5");
 };
 

@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdint>
@@ -17,6 +16,7 @@
 #include "core/input_error.h"
 #include "core/recording.h"
 #include "core/sealed_file.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sidestep {
 namespace {
@@ -32,13 +32,10 @@ constexpr std::size_t kHeadBytes = 512;
 // A folder of its own for each test, gone afterwards.
 class RecordingFile : public ::testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string Path(const std::string& name) const { return (folder_.path() / name).string(); }
 
  private:
-  std::filesystem::path folder_ =
-      std::filesystem::path(::testing::TempDir()) / ("recording_file_" + std::to_string(getpid()));
+  const TemporaryFolder folder_;
 };
 
 std::string ReadBytes(const std::string& path) {

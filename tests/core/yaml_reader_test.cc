@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/input_error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sidestep {
 namespace {
@@ -138,19 +139,12 @@ INSTANTIATE_TEST_SUITE_P(Data, BadYaml, ::testing::ValuesIn(BadFiles()),
 // What no file of the repository can be: made in a folder of its own.
 class BadFile : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(::testing::TempDir()) / (std::string("sidestep_bad_file_") + test->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::string MessageFor(const std::string& name) const {
     return MessageOf([&]() { YamlReader::FromFile((folder_ / name).string()); }, folder_);
   }
 
-  fs::path folder_;
+  const TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 TEST_F(BadFile, ThatIsMissingIsRefused) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/support/subprocess.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sidestep {
 namespace {
@@ -109,15 +110,13 @@ TEST(Help, NamesEveryCommandAndTheExitCodes) {
 }
 
 TEST(Field, IsDrawnOneSliceForEachTimeAhead) {
-  std::string folder = (std::filesystem::temp_directory_path() / "sidestep_field_XXXXXX").string();
-  ASSERT_NE(mkdtemp(folder.data()), nullptr);
-  const std::string file = folder + "/field.png";
+  const TemporaryFolder folder;
+  const std::string file = folder.path() / "field.png";
   const Finished finished =
       Sidestep({"field", "hsr_walkway", "--time", "0.2", "--ahead", "0,0.4", "--out", file});
   EXPECT_EQ(finished.exit_code, 0) << finished.err;
   std::ifstream stream(file, std::ios::binary);
   const std::string png{std::istreambuf_iterator<char>(stream), {}};
-  std::filesystem::remove_all(folder);
   ASSERT_GT(png.size(), 24u);
   EXPECT_EQ(png.substr(1, 3), "PNG");
   const auto big_endian = [&](std::size_t at) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/support/subprocess.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sidestep {
 namespace {
@@ -18,14 +19,6 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-std::string Folder() {
-  const std::string folder = ::testing::TempDir() + "reproduce_" +
-                             ::testing::UnitTest::GetInstance()->current_test_info()->name();
-  std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder);
-  return folder;
-}
 
 std::string ReadFile(const std::string& path) {
   std::ifstream stream(path, std::ios::binary);
@@ -56,7 +49,8 @@ std::vector<std::string> OneRow(const std::string& folder) {
 }
 
 TEST(Reproduce, EndsWellWhereThePublishedCountsAgree) {
-  const std::string folder = Folder();
+  const TemporaryFolder temporary;
+  const std::string folder = temporary.path();
   std::vector<std::string> arguments = OneRow(folder);
   arguments.insert(arguments.end(),
                    {"--published", WriteFile(folder + "/published.csv", PublishedRow("6,0,0"))});
@@ -77,7 +71,8 @@ TEST(Reproduce, EndsWellWhereThePublishedCountsAgree) {
 }
 
 TEST(Reproduce, EndsWithOneWhereACountDiffers) {
-  const std::string folder = Folder();
+  const TemporaryFolder temporary;
+  const std::string folder = temporary.path();
   std::vector<std::string> arguments = OneRow(folder);
   arguments.insert(arguments.end(),
                    {"--published", WriteFile(folder + "/published.csv", PublishedRow("6,1,0"))});
@@ -89,7 +84,8 @@ TEST(Reproduce, EndsWithOneWhereACountDiffers) {
 }
 
 TEST(Reproduce, SaysWhichSpheresItIgnoresInTheIntendedGeometry) {
-  const std::string folder = Folder();
+  const TemporaryFolder temporary;
+  const std::string folder = temporary.path();
   std::vector<std::string> arguments = OneRow(folder);
   arguments.insert(arguments.end(), {"--intended-geometry", "--once", "--case", "static"});
   const Finished finished = Reproduce(arguments);
@@ -101,7 +97,8 @@ TEST(Reproduce, SaysWhichSpheresItIgnoresInTheIntendedGeometry) {
 }
 
 TEST(Reproduce, DoesWithoutGnuplotAndSaysSo) {
-  const std::string folder = Folder();
+  const TemporaryFolder temporary;
+  const std::string folder = temporary.path();
   std::vector<std::string> arguments = OneRow(folder);
   arguments.insert(arguments.end(), {"--once", "--case", "static"});
   const Finished finished = Reproduce(arguments, {"PATH=" + folder});
@@ -112,7 +109,8 @@ TEST(Reproduce, DoesWithoutGnuplotAndSaysSo) {
 }
 
 TEST(Reproduce, TimesPredictedFieldsInTheScenesAndSizesAskedFor) {
-  const std::string folder = Folder();
+  const TemporaryFolder temporary;
+  const std::string folder = temporary.path();
   const Finished finished = Reproduce(
       {"sdf_timing", "--sizes", "32,48", "--scenes", "field_one_box", "--published",
        WriteFile(folder + "/published.csv", "voxels_per_side,full_computation_mean_ms\n48,5.25\n"),

@@ -12,6 +12,7 @@
 #include "bench/episode.h"
 #include "bench/resolve.h"
 #include "sim/simulation.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sidestep {
 namespace {
@@ -46,26 +47,25 @@ EpisodeWorld MakeWorld(const Scenario& scenario, const RobotModel& robot) {
 }
 
 // The bytes of an episode's trace.
-std::string Trace(const Problem& problem, const std::string& name) {
+std::string Trace(const Problem& problem) {
   const EpisodeResult result = RunEpisode(problem.scenario, problem.robot, &MakeWorld);
-  const fs::path file = fs::path(::testing::TempDir()) / ("sidestep_threads_" + name + ".h5");
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "trace.h5";
   WriteRecording(result.recording, file.string());
   std::ifstream stream(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  fs::remove(file);
-  return bytes;
+  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 TEST(TwoEpisodesInTwoThreads, GiveTheSameBitsAsAlone) {
   const Problem first = Load("hsr_walkway", {});
   const Problem second = Load("walkway_behaviours", {{"behaviour", "random_walk"}});
-  const std::string first_alone = Trace(first, "a");
-  const std::string second_alone = Trace(second, "b");
+  const std::string first_alone = Trace(first);
+  const std::string second_alone = Trace(second);
   ASSERT_NE(first_alone, second_alone);
 
   std::string first_beside, second_beside;
-  std::thread other([&] { first_beside = Trace(first, "c"); });
-  second_beside = Trace(second, "d");
+  std::thread other([&] { first_beside = Trace(first); });
+  second_beside = Trace(second);
   other.join();
   EXPECT_EQ(first_beside, first_alone);
   EXPECT_EQ(second_beside, second_alone);

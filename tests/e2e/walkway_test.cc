@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tests/support/subprocess.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sidestep {
 namespace {
@@ -28,13 +29,6 @@ std::string Slurp(const fs::path& path) {
 
 class Walkway : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "sidestep_walkway_XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   // Runs an episode into `folder_/name` and reads its result.json.
   Json Run(const std::string& name, const std::vector<std::string>& options) {
     std::vector<std::string> command = {SIDESTEP_PROGRAM, "run", "hsr_walkway", "--out",
@@ -45,7 +39,8 @@ class Walkway : public ::testing::Test {
     return Json::parse(Slurp(folder_ / name / "result.json"), nullptr, false);
   }
 
-  fs::path folder_;
+  const TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 class WalkwayAtSpeed : public Walkway, public ::testing::WithParamInterface<std::string> {};

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/subprocess.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sidestep {
 namespace {
@@ -30,13 +31,6 @@ Finished Sidestep(std::vector<std::string> arguments) {
 
 class Examples : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "sidestep_examples_XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   // Runs the example's scenario with one setting changed.
   nlohmann::json Run(const std::string& setting) {
     std::vector<std::string> arguments = {"run", "pointer_and_ball", "--out", folder_.string()};
@@ -46,7 +40,8 @@ class Examples : public ::testing::Test {
     return nlohmann::json::parse(Slurp(folder_ / "result.json"), nullptr, false);
   }
 
-  fs::path folder_;
+  const TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 struct Kind {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/support/subprocess.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sidestep {
 
@@ -12,12 +13,9 @@ namespace sidestep {
 class Installation {
  public:
   Installation();
-  ~Installation();
-  Installation(const Installation&) = delete;
-  Installation& operator=(const Installation&) = delete;
 
-  const std::filesystem::path& folder() const { return folder_; }
-  std::filesystem::path prefix() const { return folder_ / "prefix"; }
+  const std::filesystem::path& folder() const { return folder_.path(); }
+  std::filesystem::path prefix() const { return folder() / "prefix"; }
 
   /// `cmake --install` of one component ("command", "development") into prefix().
   Finished Install(const std::string& component) const;
@@ -26,7 +24,7 @@ class Installation {
   Finished Run(std::vector<std::string> arguments) const;
 
  private:
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 }  // namespace sidestep

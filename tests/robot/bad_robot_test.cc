@@ -8,6 +8,7 @@
 
 #include "core/input_error.h"
 #include "robot/robot_model.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sidestep {
 namespace {
@@ -49,7 +50,6 @@ INSTANTIATE_TEST_SUITE_P(Data, BadRobot, ::testing::ValuesIn(BadRobots()),
 class ModelsFolder : public ::testing::Test {
  protected:
   ModelsFolder() { fs::create_directories(folder_ / "arm"); }
-  ~ModelsFolder() override { fs::remove_all(folder_); }
 
   std::string MessageOf(const std::string& name) const {
     try {
@@ -60,8 +60,8 @@ class ModelsFolder : public ::testing::Test {
     return "was accepted";
   }
 
-  const std::string test_name_ = ::testing::UnitTest::GetInstance()->current_test_info()->name();
-  const fs::path folder_ = fs::path(::testing::TempDir()) / ("models_" + test_name_);
+  const TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 TEST_F(ModelsFolder, NamesTheRobotsThereAreWhenOneIsMissing) {

@@ -9,6 +9,7 @@
 
 #include "core/input_error.h"
 #include "scenarios/scenario.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sidestep {
 namespace {
@@ -60,17 +61,13 @@ TEST(BadScenarioFile, AFolderIsNotAFile) {
 class ScratchFile : public ::testing::Test {
  protected:
   std::string Write(const std::string& name, const std::string& text) {
-    const fs::path path = fs::path(::testing::TempDir()) / name;
+    const fs::path path = folder_.path() / name;
     std::ofstream(path, std::ios::binary) << text;
-    written_.push_back(path);
     return path.string();
-  }
-  void TearDown() override {
-    for (const fs::path& path : written_) fs::remove(path);
   }
 
  private:
-  std::vector<fs::path> written_;
+  const TemporaryFolder folder_;
 };
 
 TEST_F(ScratchFile, AnEmptyOneIsRefused) {

@@ -11,6 +11,7 @@
 #include "sim/world_geoms.h"
 #include "tests/sim/small_model.h"
 #include "tests/sim/two_link.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sidestep {
 namespace {
@@ -173,11 +174,7 @@ TEST(WorldXml, AimsItsCamerasAtTheRobotsWorkspace) {
 // Files in a folder of models of their own.
 class BrokenModel : public testing::Test {
  protected:
-  void SetUp() override {
-    directory_ = testing::TempDir() + "/broken_models";
-    std::filesystem::create_directories(directory_ + "/arm");
-  }
-  void TearDown() override { std::filesystem::remove_all(directory_); }
+  void SetUp() override { std::filesystem::create_directories(directory_ + "/arm"); }
 
   std::string MessageFor(const std::string& text) const {
     std::ofstream(directory_ + "/arm/arm.xml") << text;
@@ -191,7 +188,8 @@ class BrokenModel : public testing::Test {
     return "was accepted";
   }
 
-  std::string directory_;
+  const TemporaryFolder folder_;
+  const std::string directory_ = folder_.path();
 };
 
 TEST_F(BrokenModel, IsRefusedWithItsLine) {

@@ -10,6 +10,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "tests/support/temporary_folder.h"
+
 namespace sidestep {
 namespace {
 
@@ -26,10 +28,8 @@ Finished RunProgram(const std::vector<std::string>& command,
                     const std::vector<std::string>& environment,
                     const std::string& working_directory) {
   // Files, not pipes: a pipe that nobody empties stops the program.
-  std::string name = (std::filesystem::temp_directory_path() / "sidestep_run_XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-  const std::filesystem::path folder = name;
-  const std::string out = folder / "out", err = folder / "err";
+  const TemporaryFolder folder;
+  const std::string out = folder.path() / "out", err = folder.path() / "err";
   std::vector<char*> arguments;
   for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
@@ -54,7 +54,6 @@ Finished RunProgram(const std::vector<std::string>& command,
   finished.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   finished.out = Slurp(out);
   finished.err = Slurp(err);
-  std::filesystem::remove_all(folder);
   if (finished.exit_code == 127) throw std::runtime_error("cannot run " + command.at(0));
   return finished;
 }
