@@ -112,6 +112,7 @@ int Run(const std::string& name, const OpenLoopCommand& command) {
   }
   std::vector<OpenLoopStatistics> statistics;
   for (const RowFilter filter : {RowFilter::kAllRows, RowFilter::kPublishedExclusions}) {
+    if (!CanFilter(outcomes, filter)) continue;
     statistics.push_back(ComputeOpenLoopStatistics(outcomes, filter, experiment));
   }
   WriteTextFile(out + "/statistics.json", ToJson(statistics));
@@ -119,6 +120,11 @@ int Run(const std::string& name, const OpenLoopCommand& command) {
   PrintVerdicts(study);
   for (const OpenLoopStatistics& filtered : statistics) {
     std::printf("\n%s", Describe(filtered).c_str());
+  }
+  if (!CanFilter(outcomes, RowFilter::kPublishedExclusions)) {
+    std::printf(
+        "\npublished_exclusions: left out, they need --case static,execute_and_update,"
+        "full_knowledge\n");
   }
   if (published) {
     std::printf("\nagainst %s: %s", command.published.c_str(), Describe(published->table).c_str());

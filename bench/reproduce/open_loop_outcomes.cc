@@ -53,6 +53,16 @@ std::string ToString(RowFilter filter) {
   return filter == RowFilter::kAllRows ? "all_rows" : "published_exclusions";
 }
 
+bool CanFilter(const std::vector<MatchedOutcomes>& rows, RowFilter filter) {
+  if (filter == RowFilter::kAllRows) return true;
+  return std::all_of(rows.begin(), rows.end(), [](const MatchedOutcomes& row) {
+    return std::all_of(std::begin(kPublishedCases), std::end(kPublishedCases),
+                       [&](const PublishedCase& entry) {
+                         return !entry.is_published || row.runs.contains(entry.knowledge);
+                       });
+  });
+}
+
 FilteredRows Filter(const std::vector<MatchedOutcomes>& rows, RowFilter filter,
                     const OpenLoopExperiment& experiment) {
   if (filter == RowFilter::kAllRows) return {rows, 0, 0};

@@ -38,6 +38,10 @@ enum class RowFilter {
 /// "all_rows", "published_exclusions".
 std::string ToString(RowFilter filter);
 
+/// Whether the rows hold what the filter asks for: for the publication's, all of the published
+/// kinds of knowledge.
+bool CanFilter(const std::vector<MatchedOutcomes>& rows, RowFilter filter);
+
 /// What a filter left, and what it left out.
 struct FilteredRows {
   std::vector<MatchedOutcomes> rows;

@@ -48,6 +48,17 @@ std::vector<std::string> OneRow(const std::string& folder) {
   return {"panda_hsr", "--pairs", "1", "--speeds", "1.4", "-j", "1", "--out", folder};
 }
 
+TEST(Reproduce, LeavesOutTheExclusionsWhereAPublishedKindOfKnowledgeIsNotRun) {
+  const TemporaryFolder folder;
+  std::vector<std::string> arguments = OneRow(folder.path());
+  arguments.insert(arguments.end(), {"--case", "prediction"});
+  const Finished finished = Reproduce(arguments);
+  EXPECT_EQ(finished.exit_code, 0) << finished.err;
+  EXPECT_THAT(finished.out, AllOf(HasSubstr("all_rows: 1 rows"),
+                                  HasSubstr("published_exclusions: left out, they need")));
+  EXPECT_EQ(nlohmann::json::parse(ReadFile(folder.path() / "statistics.json")).size(), 1u);
+}
+
 TEST(Reproduce, EndsWellWhereThePublishedCountsAgree) {
   const TemporaryFolder temporary;
   const std::string folder = temporary.path();
