@@ -113,6 +113,7 @@ std::string ToGnuplot(const Figure& figure, const std::string& stem) {
             "set grid lc rgb '#dddddd' lt 1 lw 0.5\n"
             "set border 3 lc rgb '#444444'\n"
             "set tics nomirror\n"
+            "set format y '%g'\n"
             "set key outside bottom center horizontal samplen 2 height 1\n";
   for (const char* const terminal : {"svg", "png"}) {
     const bool is_svg = terminal == std::string("svg");

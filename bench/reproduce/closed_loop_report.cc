@@ -73,6 +73,8 @@ std::vector<Summary> SummariseWholeRun(const WholeRunTimes& times) {
   return {Summarise("full computation", Collect(times.predictions, &PredictionTimes::full_s)),
           Summarise("initialisation", times.init_s),
           Summarise("composite (dense)", Collect(times.predictions, &PredictionTimes::dense_s)),
+          Summarise("composite (incremental)",
+                    Collect(times.predictions, &PredictionTimes::incremental_s)),
           Summarise("composite (lazy)", Collect(times.predictions, &PredictionTimes::lazy_s))};
 }
 

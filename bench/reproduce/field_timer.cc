@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/cpu_time.h"
-#include "sdf/dense_composite.h"
 #include "sdf/map/object_field.h"
 #include "sdf/prediction/registry.h"
 #include "sdf/tracking/segmentation.h"
@@ -69,6 +68,7 @@ FieldTimer::FieldTimer(const FieldScene& scene, const GridSpec& grid, double mar
     : margin_m_(margin_m),
       static_occupancy_(StaticOccupancy(scene, grid)),
       exact_m_(grid.num_cells()),
+      dense_m_(grid.num_cells()),
       queries_W_(RandomPoints(grid)) {
   if (!(first < second)) throw std::invalid_argument("FieldTimer: needs first < second");
   const std::vector<Component> before = FindObjects(scene, static_occupancy_, first);
@@ -97,6 +97,8 @@ FieldTimer::FieldTimer(const FieldScene& scene, const GridSpec& grid, double mar
                         }});
     shapes_O_.push_back(std::move(shape_O));
   }
+  steps_.emplace(static_W_, objects_);
+  steps_->At(second);
 }
 
 OccupancyGrid FieldTimer::PredictMap(EpisodeTime t) const {
@@ -129,11 +131,10 @@ PredictionTimes FieldTimer::Time(EpisodeTime t) {
   };
   ComputeExact(PredictMap(t));
   times.full_s = lap();
-  {
-    const SdfGrid dense = ComposeDense(*static_W_, objects_, t);
-    times.dense_s = lap();
-  }
-  lap();  // giving the memory back
+  ComposeDense(*static_W_, objects_, t, dense_m_);
+  times.dense_s = lap();
+  steps_->At(t);
+  times.incremental_s = lap();
   const CompositeField lazy(static_W_, objects_, margin_m_);
   times.lazy_s = lap();
   DistanceSamples samples;
@@ -158,10 +159,10 @@ bool FieldTimer::HoldsAllObjects(EpisodeTime t) const {
 CompositeError FieldTimer::Compare(EpisodeTime t) {
   const OccupancyGrid map = PredictMap(t);
   ComputeExact(map);
-  const SdfGrid dense = ComposeDense(*static_W_, objects_, t);
+  ComposeDense(*static_W_, objects_, t, dense_m_);
   CompositeError error;
   for (std::size_t i = 0; i < exact_m_.size(); ++i) {
-    const double difference_m = std::abs(dense.distance_m()[i] - exact_m_[i]);
+    const double difference_m = std::abs(dense_m_[i] - exact_m_[i]);
     if (map.cells[i] != 0) {
       error.inside_m = std::max(error.inside_m, difference_m);
     } else if (exact_m_[i] <= margin_m_) {

@@ -2,12 +2,15 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "bench/reproduce/field_scene.h"
 #include "core/grid.h"
 #include "core/time.h"
+#include "sdf/aligned_vector.h"
 #include "sdf/composite_field.h"
+#include "sdf/dense_composite.h"
 #include "sdf/map/fast_distance_transform.h"
 #include "sdf/map/sdf_grid.h"
 
@@ -15,10 +18,11 @@ namespace sidestep {
 
 /// What making the field of one predicted moment cost [s, CPU], by the ways there are.
 struct PredictionTimes {
-  double full_s = 0;   ///< the map of that moment, and its exact transform
-  double dense_s = 0;  ///< the composite as a grid: copy and min (sdf/dense_composite.h)
-  double lazy_s = 0;   ///< making the composite that is composed when asked
-  double query_s = 0;  ///< asking that for one point, mean of many
+  double full_s = 0;         ///< the map of that moment, and its exact transform
+  double dense_s = 0;        ///< the composite as a grid: copy and min (sdf/dense_composite.h)
+  double incremental_s = 0;  ///< the same, from the grid of the moment asked about before
+  double lazy_s = 0;         ///< making the composite that is composed when asked
+  double query_s = 0;        ///< asking that for one point, mean of many
 };
 
 /// How far the dense composite is from the exact field of the same moment, at cell centres [m].
@@ -43,6 +47,7 @@ class FieldTimer {
   double init_s() const { return init_s_; }
   const std::vector<MovingField>& objects() const { return objects_; }
 
+  /// Grids are written to memory that is there already.
   PredictionTimes Time(EpisodeTime t);
 
   /// Whether all of every object lies in the grid at `t`. If not, a composite field still knows
@@ -61,7 +66,8 @@ class FieldTimer {
   std::shared_ptr<const SdfGrid> static_W_;
   std::vector<MovingField> objects_;
   FastDistanceTransform transform_;
-  std::vector<float> exact_m_;
+  AlignedVector<float> exact_m_, dense_m_;
+  std::optional<DenseSteps> steps_;
   Eigen::Matrix3Xd queries_W_;
 };
 

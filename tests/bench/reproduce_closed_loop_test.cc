@@ -88,7 +88,7 @@ TEST(ClosedLoopReport, GivesRatesBesideThePublishedOnes) {
 
 TEST(ClosedLoopReport, SumsUpTheWholeRun) {
   const CsvTable table = MakeWholeRunTable(Sample().whole_run);
-  ASSERT_EQ(table.num_rows(), 4u);
+  ASSERT_EQ(table.num_rows(), 5u);
   EXPECT_DOUBLE_EQ(table.At(0, 2).value(), 20) << "least full computation [ms]";
   EXPECT_DOUBLE_EQ(table.At(0, 4).value(), 25) << "its mean";
   EXPECT_DOUBLE_EQ(table.At(2, 5).value(), 2) << "greatest dense composite";

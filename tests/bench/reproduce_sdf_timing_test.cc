@@ -94,7 +94,7 @@ TEST(SdfTiming, MakesARowOfEachSize) {
   published.AddRow({64, 9.34});
   EXPECT_THAT(DescribeSdfTiming(table, published), ::testing::HasSubstr("(9.34)"));
   const Figure figure = MakeSdfTimingFigure(table, published);
-  EXPECT_EQ(figure.panels.at(0).series.size(), 6u) << "five measures and one set of rings";
+  EXPECT_EQ(figure.panels.at(0).series.size(), 7u) << "six measures and one set of rings";
 }
 
 }  // namespace
