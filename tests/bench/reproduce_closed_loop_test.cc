@@ -56,8 +56,8 @@ ClosedLoopStudy Sample() {
   ClosedLoopStudy study;
   study.update = Episode("execute_and_update");
   study.prediction = Episode("prediction");
-  study.rates.push_back({96, {0.01, 0.02, 0.04}, {{0.02, 0.001, 1e-6, 0}}});
-  study.whole_run = {{0.003}, {{0.02, 0.001, 1e-6, 0}, {0.03, 0.002, 1e-6, 0}}};
+  study.rates.push_back({96, {0.01, 0.02, 0.04}, {{0.02, 0.001, 1e-5, 1e-6, 0}}});
+  study.whole_run = {{0.003}, {{0.02, 0.001, 1e-5, 1e-6, 0}, {0.03, 0.002, 1e-5, 1e-6, 0}}};
   return study;
 }
 
