@@ -177,7 +177,7 @@ std::vector<unsigned char> Hdf5ImageWriter::Finish() {
 }
 
 Hdf5ImageReader::Hdf5ImageReader(std::span<const unsigned char> image, std::string name)
-    : name_(std::move(name)), file_([&]() -> hid_t {
+    : name_(std::move(name)), image_bytes_(image.size()), file_([&]() -> hid_t {
         const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS));
         if (image.empty()) return H5I_INVALID_HID;
         // The library copies the image, and takes a pointer to mutable bytes nevertheless.
@@ -228,6 +228,16 @@ std::vector<hsize_t> Hdf5ImageReader::CheckShape(const std::string& path, hid_t 
   const bool fits = std::equal(shape.begin(), shape.end(), wanted.begin(), wanted.end(),
                                [](hsize_t is, hsize_t want) { return want == kAny || is == want; });
   if (!fits) Fail(path, "has " + ToText(shape) + ", expected " + ToText(wanted));
+  // A damaged shape must not ask for memory without end. Deflate packs at most 1032 bytes in one.
+  const Hdf5Id type(H5Dget_type(dataset));
+  const double num_bytes = std::accumulate(
+      shape.begin(), shape.end(), static_cast<double>(H5Tget_size(type)),
+      [](double product, hsize_t size) { return product * static_cast<double>(size); });
+  const double most_bytes =
+      1032.0 * static_cast<double>(std::min<hsize_t>(H5Dget_storage_size(dataset), image_bytes_));
+  if (num_bytes > most_bytes) {
+    Fail(path, "has " + ToText(shape) + ", more than the file can hold");
+  }
   return shape;
 }
 

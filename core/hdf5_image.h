@@ -106,6 +106,7 @@ class Hdf5ImageReader {
 
   Hdf5Session session_;
   std::string name_;
+  std::size_t image_bytes_;
   Hdf5Id file_;
 };
 

@@ -16,6 +16,7 @@
 #include "core/input_error.h"
 #include "core/recording.h"
 #include "core/sealed_file.h"
+#include "tests/support/full_recording.h"
 #include "tests/support/temporary_folder.h"
 
 namespace sidestep {
@@ -56,99 +57,6 @@ std::string Refusal(const std::string& path) {
   }
   ADD_FAILURE() << path << " was accepted";
   return "";
-}
-
-Pose TurnedPose(double angle, double x) {
-  return Pose(
-      Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d(1, -2, 0.5).normalized())),
-      {x, -x, 2 * x});
-}
-
-// Every field set, no two alike, ragged parts ragged.
-Recording FullRecording() {
-  Recording recording;
-  recording.header = {{"knowledge", "prediction"}, {"scenario", "allée à piétons"}, {"empty", ""}};
-  recording.scenario_yaml = "name: test\nspeed: 1.4\n";
-  recording.model_xml = "<mujoco/>";
-  recording.joints = {"shoulder", "elbow"};
-  recording.obstacles = {"trolley", "ball", "door"};
-  recording.q_start = Eigen::Vector2d(0.1, -0.2);
-  recording.q_goal = Eigen::Vector2d(1.0 / 3, std::nextafter(1.0, 2.0));
-  recording.v_max = Eigen::Vector2d(2.175, 2.61);
-  for (int i = 0; i < 5000; ++i) {  // More rows than one chunk holds.
-    ControlSample sample;
-    sample.t = EpisodeTime(0.001 * i);
-    sample.q_command = Eigen::Vector2d(i, 0.5 * i);
-    sample.v_command = Eigen::Vector2d(i + 0.1, -i);
-    sample.a_command = Eigen::Vector2d(std::sin(i), std::cos(i));
-    sample.q = Eigen::Vector2d(i + 0.2, 1e-300 * i);
-    sample.v = Eigen::Vector2d(i + 0.3, -0.0);
-    sample.torque = Eigen::Vector2d(i + 0.4, 1e300);
-    recording.control.push_back(sample);
-  }
-  for (int i = 0; i < 3; ++i) {
-    TruthSample sample;
-    sample.t = EpisodeTime(0.01 * i);
-    sample.clearance_m = 0.1 - 0.07 * i;
-    sample.nearest_robot_part = i == 0 ? "hand" : "forearm";
-    sample.nearest_object = i == 0 ? "table" : "trolley";
-    sample.in_contact = i == 2;
-    if (sample.in_contact) {
-      sample.contact_s = 0.0195;
-      sample.contact_object = "trolley";
-      sample.p_WContact = {0.7, -0.8, 0.9};
-    }
-    for (int k = 0; k < 3; ++k) sample.X_WO.push_back(TurnedPose(0.3 * i + k, i - 2.0 * k));
-    recording.truth.push_back(sample);
-  }
-  for (int i = 0; i < 3; ++i) {
-    CycleRecord cycle;
-    cycle.t = EpisodeTime(0.1 * i);
-    cycle.t_effect = EpisodeTime(0.1 * i + 0.1);
-    cycle.status = i == 1 ? "not_converged" : "solved";
-    cycle.accepted = i != 1;
-    cycle.iterations = 7 + i;
-    cycle.cost = 12.5 * i;
-    cycle.predicted_clearance_m = 0.04 - i;
-    cycle.plan_start = EpisodeTime(0.1 * i + 0.05);
-    if (i != 1) {
-      const int num_states = 3 + i;
-      cycle.plan.t_s = Eigen::VectorXd::LinSpaced(num_states, 0, 3);
-      cycle.plan.q = Eigen::MatrixXd::Constant(2, num_states, 0.25 * i);
-      cycle.plan.q(1, 2) = 9;
-      cycle.plan.v = cycle.plan.q.array() + 1;
-    }
-    for (int k = 0; k < i; ++k) {
-      PredictedObject object;
-      object.id = 10 * i + k;
-      object.half_extents_m = {0.1 + k, 0.2 + k, 0.3 + k};
-      for (int m = 0; m <= k; ++m) {
-        object.t.push_back(EpisodeTime(0.1 * i + 0.5 * m));
-        object.X_WO.push_back(TurnedPose(0.1 * m, 3 + m));
-      }
-      cycle.objects.push_back(object);
-    }
-    recording.cycles.push_back(cycle);
-  }
-  recording.events = {{EpisodeTime(0.1), "appeared", 1, 0, {0.4, 2, 0.6}},
-                      {EpisodeTime(0.3), "merged", 2, 1, {0.5, 1, 0.7}}};
-  for (int i = 0; i < 3; ++i) {
-    ObservationRecord observation;
-    observation.t = EpisodeTime(0.1 * i);
-    observation.t_arrival = EpisodeTime(0.1 * i + 0.05);
-    for (int k = 0; k < 2 * i; ++k) observation.changed_cells.push_back(100 * i + k);
-    for (int k = 0; k < 2 - i; ++k) {
-      SeenObject object;
-      object.id = k == 0 ? "trolley" : "ball";
-      object.X_WO = TurnedPose(0.2 * k, i + k);
-      object.covariance.setConstant(0.1 * i + k);
-      observation.objects.push_back(object);
-    }
-    recording.observations.push_back(observation);
-  }
-  recording.metrics = {{"min_clearance_m", -0.04},
-                       {"time_to_goal_s", std::numeric_limits<double>::quiet_NaN()}};
-  return recording;
 }
 
 void ExpectEqual(double a, double b) { EXPECT_TRUE(a == b || (std::isnan(a) && std::isnan(b))); }
@@ -406,7 +314,8 @@ struct Fault {
   std::string name;
   std::string dataset;  // replaced ...
   std::vector<hsize_t> shape;
-  std::vector<double> values;  // ... by these, or left out if there are none
+  // ... by these; without any: by a mere promise of that shape, or left out if that is empty, too.
+  std::vector<double> values;
   std::string message;
 };
 
@@ -422,14 +331,20 @@ std::vector<unsigned char> WithFault(const std::string& path, const Fault& fault
   EXPECT_GE(H5Pset_file_image(access, payload.data(), payload.size()), 0);
   const Hdf5Id file(H5Fopen("in memory", H5F_ACC_RDWR, access));
   EXPECT_GE(H5Ldelete(file, fault.dataset.c_str(), H5P_DEFAULT), 0) << fault.dataset;
-  if (!fault.values.empty()) {
-    const Hdf5Id space(
-        H5Screate_simple(static_cast<int>(fault.shape.size()), fault.shape.data(), nullptr));
+  if (!fault.shape.empty()) {
+    const int rank = static_cast<int>(fault.shape.size());
+    const std::vector<hsize_t> chunk(fault.shape.size(), 1);
+    const Hdf5Id creation(H5Pcreate(H5P_DATASET_CREATE));
+    EXPECT_GE(H5Pset_chunk(creation, rank, chunk.data()), 0);
+    const Hdf5Id space(H5Screate_simple(rank, fault.shape.data(), nullptr));
     const Hdf5Id dataset(H5Dcreate2(file, fault.dataset.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT,
-                                    H5P_DEFAULT, H5P_DEFAULT));
-    EXPECT_GE(
-        H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, fault.values.data()),
-        0);
+                                    creation, H5P_DEFAULT));
+    EXPECT_TRUE(dataset.valid());
+    if (!fault.values.empty()) {
+      EXPECT_GE(
+          H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, fault.values.data()),
+          0);
+    }
   }
   EXPECT_GE(H5Fflush(file, H5F_SCOPE_GLOBAL), 0);
   std::vector<unsigned char> image(static_cast<std::size_t>(H5Fget_file_image(file, nullptr, 0)));
@@ -457,6 +372,11 @@ INSTANTIATE_TEST_SUITE_P(
               {2},
               {1, 2},
               "truth/clearance: has shape 2, expected shape 3"},
+        Fault{"Endless",
+              "cycles/t",
+              {1'000'000'000'000},
+              {},
+              "cycles/t: has shape 1000000000000, more than the file can hold"},
         Fault{"TimeNotFinite",
               "cycles/t",
               {3},
