@@ -52,7 +52,8 @@ class Loop {
         world_(world),
         observe_field_(observe_field),
         planner_(MakePlanner(scenario.planner, robot, MakePlannerSettings(scenario))),
-        model_(MakeWorldModel(MakeWorldModelOptions(scenario, robot, world))),
+        model_(MakeWorldModel(MakeWorldModelOptions(
+            scenario, scenario.epsilon_m + robot.largest_sphere_radius_m(), world))),
         replanner_(*planner_, *model_, {scenario.horizon_s, scenario.step_s, scenario.q_goal}),
         end_s_(kHorizons * scenario.horizon_s) {
     result_.recording = BeginRecording(scenario, robot, world);
@@ -198,7 +199,7 @@ class Loop {
 
 }  // namespace
 
-WorldModelOptions MakeWorldModelOptions(const Scenario& scenario, const RobotModel& robot,
+WorldModelOptions MakeWorldModelOptions(const Scenario& scenario, double max_distance_m,
                                         const EpisodeWorld& world) {
   WorldModelOptions options;
   options.knowledge = KnowledgeFromString(scenario.knowledge);
@@ -209,7 +210,7 @@ WorldModelOptions MakeWorldModelOptions(const Scenario& scenario, const RobotMod
   if (scenario.sensor.camera) {
     options.unseen = UnseenSpaceFromString(scenario.sensor.camera->unseen);
   }
-  options.max_distance_m = scenario.epsilon_m + robot.largest_sphere_radius_m();
+  options.max_distance_m = max_distance_m;
   if (world.truth != nullptr) {
     options.true_obstacles = [truth = world.truth](EpisodeTime t) { return truth->ObstaclesAt(t); };
   }

@@ -30,8 +30,9 @@ struct EpisodeWorld {
 /// Makes the world of a scenario; simulation and hardware each have one.
 using WorldFactory = std::function<EpisodeWorld(const Scenario&, const RobotModel&)>;
 
-/// How the scenario's model of the world is made, fed from `world`, which must outlive it.
-WorldModelOptions MakeWorldModelOptions(const Scenario& scenario, const RobotModel& robot,
+/// How the scenario's model of the world is made, fed from `world`, which must outlive it. Its
+/// fields tell distances up to `max_distance_m`.
+WorldModelOptions MakeWorldModelOptions(const Scenario& scenario, double max_distance_m,
                                         const EpisodeWorld& world);
 
 /// Is shown the field of each planning cycle as the planner saw it, made at time `t`, and the

@@ -43,7 +43,9 @@ void CheckData(Report& report) {
     std::size_t num_scenarios = 0;
     for (const std::string& name : ScenarioNames(paths.scenarios)) {
       const Scenario scenario = LoadScenario(paths.scenarios + "/" + name + ".yaml");
-      RobotModel::Load(paths.models, scenario.robot, scenario.X_WB);
+      if (!scenario.robot.empty()) {
+        RobotModel::Load(paths.models, scenario.robot, scenario.X_WB);
+      }
       ++num_scenarios;
     }
     report.Good("data", std::to_string(num_scenarios) + " scenarios, each with its robot, in " +

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/command.h"
@@ -33,13 +34,11 @@ struct Belief {
   std::shared_ptr<const DistanceField> field;
 };
 
-Belief Watch(const Problem& problem, const FieldOptions& options, const DataPaths& paths) {
+Belief Watch(Scene scene, const FieldOptions& options) {
   Belief belief;
-  belief.world = SimulatedWorlds(paths)(problem.scenario, problem.robot);
-  WorldModelOptions model_options =
-      MakeWorldModelOptions(problem.scenario, problem.robot, belief.world);
-  model_options.max_distance_m = options.reach_m;
-  belief.model = MakeWorldModel(model_options);
+  belief.world = std::move(scene.world);
+  belief.model =
+      MakeWorldModel(MakeWorldModelOptions(scene.scenario, options.reach_m, belief.world));
   bool has_seen = false;
   while (belief.world.sensor->NextDue().seconds() <= options.time_s) {
     belief.world.robot->AdvanceTo(belief.world.sensor->NextDue());
@@ -105,14 +104,13 @@ Image Slice(const Belief& belief, const GridSpec& grid, EpisodeTime t, double he
 
 int DrawField(FieldOptions options) {
   options.overrides.settings = ParseSettings(options.settings);
-  const DataPaths paths = FindDataPaths();
-  const Problem problem = LoadProblem(options.scenario, options.overrides, paths);
-  const Belief belief = Watch(problem, options, paths);
+  Scene scene = LoadScene(options.scenario, options.overrides, FindDataPaths());
+  const GridSpec grid = scene.scenario.grid;
+  const Belief belief = Watch(std::move(scene), options);
   constexpr int kGap = 6;
   std::vector<Image> slices;
   for (const double ahead_s : options.ahead_s) {
-    slices.push_back(
-        Slice(belief, problem.scenario.grid, belief.t + HorizonOffset(ahead_s), options.height_m));
+    slices.push_back(Slice(belief, grid, belief.t + HorizonOffset(ahead_s), options.height_m));
   }
   const int width = slices.front().width() + kGap;
   Image image(width * static_cast<int>(slices.size()) - kGap, slices.front().height());

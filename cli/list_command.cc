@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "bench/metrics/registry.h"
-#include "bench/reproduce/field_scene.h"
 #include "cli/command.h"
 #include "cli/data_paths.h"
 #include "core/input_error.h"
@@ -19,6 +18,16 @@
 namespace sidestep {
 namespace {
 
+// Those that have a robot, or those that have none.
+std::vector<std::string> NamesOfScenarios(const DataPaths& paths, bool with_robot) {
+  std::vector<std::string> names;
+  for (const std::string& name : ScenarioNames(paths.scenarios)) {
+    const Scenario scenario = LoadScenario(paths.scenarios + "/" + name + ".yaml");
+    if (scenario.robot.empty() != with_robot) names.push_back(name);
+  }
+  return names;
+}
+
 struct Kind {
   const char* title;
   std::vector<std::string> (*names)(const DataPaths&);
@@ -31,8 +40,8 @@ std::vector<std::string> KnowledgeNames(const DataPaths&) {
 }
 
 const Kind kKinds[] = {
-    {"scenarios", [](const DataPaths& paths) { return ScenarioNames(paths.scenarios); }},
-    {"field_scenes", [](const DataPaths&) { return FieldSceneNames(); }},
+    {"scenarios", [](const DataPaths& paths) { return NamesOfScenarios(paths, true); }},
+    {"field_scenes", [](const DataPaths& paths) { return NamesOfScenarios(paths, false); }},
     {"robots", [](const DataPaths& paths) { return RobotModel::ListNames(paths.models); }},
     {"knowledge", &KnowledgeNames},
     {"planners", [](const DataPaths&) { return PlannerNames(); }},
@@ -65,7 +74,6 @@ int ListAll() {
     const std::string file = paths.scenarios + "/" + name + ".yaml";
     notes[name] = LoadScenario(file).description + ChoicesOf(file);
   }
-  for (const std::string& name : FieldSceneNames()) notes[name] = MakeFieldScene(name).description;
   for (const Metric& metric : Metrics()) {
     notes[metric.name] = metric.meaning + std::string(" [") + metric.unit + "]";
   }

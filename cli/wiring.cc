@@ -62,6 +62,47 @@ std::vector<std::string> ModelNames(const std::string& models, const std::string
   return names;
 }
 
+// The file, overridden, with the words judged that have nothing to do with a robot.
+Scenario LoadOverridden(const std::string& name, const Overrides& overrides,
+                        const DataPaths& paths) {
+  Settings settings = overrides.settings;
+  if (overrides.seed) settings["seed"] = std::to_string(*overrides.seed);  // motions follow from it
+  Scenario scenario = LoadScenario(FindScenario(name, paths), settings);
+  Override(scenario, overrides);
+  CheckWord(scenario, "knowledge", scenario.knowledge, KnowledgeWords(),
+            overrides.knowledge ? "--knowledge" : nullptr);
+  CheckWord(scenario, "predictor", scenario.predictor, PredictorNames(),
+            overrides.predictor ? "--predictor" : nullptr);
+  CheckWord(scenario, "sensor.name", scenario.sensor.name, SensorNames());
+  for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
+    const std::string& appearance = scenario.moving_obstacles[i].appearance;
+    if (appearance.empty()) continue;
+    CheckWord(scenario, "moving_obstacles[" + std::to_string(i) + "].appearance", appearance,
+              ModelNames(paths.models, ".xml"));
+  }
+  return scenario;
+}
+
+Problem AddRobot(Scenario scenario, const DataPaths& paths) {
+  CheckWord(scenario, "planner.name", scenario.planner, PlannerNames());
+  CheckWord(scenario, "robot.model", scenario.robot, ModelNames(paths.models, "robot.yaml"));
+  RobotModel robot = RobotModel::Load(paths.models, scenario.robot, scenario.X_WB);
+  ResolveTask(scenario, robot);
+  return {std::move(scenario), std::move(robot)};
+}
+
+EpisodeWorld MakeWorld(std::shared_ptr<Simulation> simulation) {
+  EpisodeWorld world;
+  world.robot = &simulation->robot();
+  world.sensor = &simulation->sensor();
+  world.truth = &simulation->truth();
+  world.model_xml = simulation->model_xml();
+  world.joints = simulation->joints();
+  world.obstacles = simulation->obstacles();
+  world.owner = std::move(simulation);
+  return world;
+}
+
 }  // namespace
 
 Settings ParseSettings(const std::vector<std::string>& texts) {
@@ -80,40 +121,28 @@ Settings ParseSettings(const std::vector<std::string>& texts) {
 }
 
 Problem LoadProblem(const std::string& name, const Overrides& overrides, const DataPaths& paths) {
-  Settings settings = overrides.settings;
-  if (overrides.seed) settings["seed"] = std::to_string(*overrides.seed);  // motions follow from it
-  Scenario scenario = LoadScenario(FindScenario(name, paths), settings);
-  Override(scenario, overrides);
-  CheckWord(scenario, "knowledge", scenario.knowledge, KnowledgeWords(),
-            overrides.knowledge ? "--knowledge" : nullptr);
-  CheckWord(scenario, "predictor", scenario.predictor, PredictorNames(),
-            overrides.predictor ? "--predictor" : nullptr);
-  CheckWord(scenario, "planner.name", scenario.planner, PlannerNames());
-  CheckWord(scenario, "sensor.name", scenario.sensor.name, SensorNames());
-  CheckWord(scenario, "robot.model", scenario.robot, ModelNames(paths.models, "robot.yaml"));
-  for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
-    const std::string& appearance = scenario.moving_obstacles[i].appearance;
-    if (appearance.empty()) continue;
-    CheckWord(scenario, "moving_obstacles[" + std::to_string(i) + "].appearance", appearance,
-              ModelNames(paths.models, ".xml"));
+  Scenario scenario = LoadOverridden(name, overrides, paths);
+  if (scenario.robot.empty()) {
+    throw InputError("SCENARIO", "'" + name + "' has no robot: it can be drawn (sidestep field) " +
+                                     "and timed (sidestep reproduce sdf_timing), but not run");
   }
-  RobotModel robot = RobotModel::Load(paths.models, scenario.robot, scenario.X_WB);
-  ResolveTask(scenario, robot);
-  return {std::move(scenario), std::move(robot)};
+  return AddRobot(std::move(scenario), paths);
+}
+
+Scene LoadScene(const std::string& name, const Overrides& overrides, const DataPaths& paths) {
+  Scenario scenario = LoadOverridden(name, overrides, paths);
+  if (scenario.robot.empty()) {
+    EpisodeWorld world = MakeWorld(std::make_shared<Simulation>(scenario, paths.models));
+    return {std::move(scenario), std::move(world)};
+  }
+  Problem problem = AddRobot(std::move(scenario), paths);
+  EpisodeWorld world = SimulatedWorlds(paths)(problem.scenario, problem.robot);
+  return {std::move(problem.scenario), std::move(world)};
 }
 
 WorldFactory SimulatedWorlds(const DataPaths& paths) {
   return [models = paths.models](const Scenario& scenario, const RobotModel& robot) {
-    auto simulation = std::make_shared<Simulation>(scenario, robot, models);
-    EpisodeWorld world;
-    world.robot = &simulation->robot();
-    world.sensor = &simulation->sensor();
-    world.truth = &simulation->truth();
-    world.model_xml = simulation->model_xml();
-    world.joints = simulation->joints();
-    world.obstacles = simulation->obstacles();
-    world.owner = std::move(simulation);
-    return world;
+    return MakeWorld(std::make_shared<Simulation>(scenario, robot, models));
   };
 }
 

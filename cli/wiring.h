@@ -34,6 +34,15 @@ struct Problem {
 Problem LoadProblem(const std::string& scenario, const Overrides& overrides,
                     const DataPaths& paths);
 
+/// A scenario's simulated world at time 0.
+struct Scene {
+  Scenario scenario;
+  EpisodeWorld world;
+};
+
+/// The same for what needs no robot, so that the scenario may have none. @throws InputError.
+Scene LoadScene(const std::string& scenario, const Overrides& overrides, const DataPaths& paths);
+
 /// Simulated worlds.
 WorldFactory SimulatedWorlds(const DataPaths& paths);
 

@@ -75,15 +75,35 @@ Replanner::Cycle Replanner::Run(EpisodeTime now, const JointState& state, Horizo
   CycleRecord& record = cycle.record;
   TimedPlan shown = present;
   if (const auto request = MakeRequest(now, state, t_effect, *field)) {
-    PlanResult result = planner_.Plan(*request);
-    record.status = ToString(result.status);
-    record.iterations = result.iterations;
-    record.cost = result.cost.total();
-    record.predicted_clearance_m = result.min_clearance_m;
-    shown = {std::move(result.trajectory), request->start};
-    record.accepted =
-        IsFinite(shown.trajectory) &&
-        (result.min_clearance_m > 0 || result.min_clearance_m > clearance_m(present, EndOf(shown)));
+    const auto show = [&](PlanResult result, EpisodeTime start) {
+      record.status = ToString(result.status);
+      record.iterations += result.iterations;
+      record.cost = result.cost.total();
+      record.predicted_clearance_m = result.min_clearance_m;
+      shown = {std::move(result.trajectory), start};
+    };
+    show(planner_.Plan(*request), request->start);
+    if (record.predicted_clearance_m <= 0 && running_) {
+      TrajectoryPoint there = {request->q_start, request->v_start, {}};
+      if (request->start < t_effect) {
+        there = Sample(present.trajectory, t_effect - present.start);
+        PlanResult result = planner_.Plan(NewHorizon(t_effect, there.q, there.v, *field));
+        if (result.min_clearance_m > record.predicted_clearance_m) {
+          show(std::move(result), t_effect);
+        }
+      }
+      TimedPlan brake = Brake(t_effect, there);
+      const double brake_m = clearance_m(brake, EndOf(brake));
+      if (record.predicted_clearance_m <= 0 && brake_m > record.predicted_clearance_m &&
+          clearance_m(present, EndOf(brake)) <= 0) {
+        record.status = "braked";
+        record.predicted_clearance_m = brake_m;
+        shown = std::move(brake);
+      }
+    }
+    record.accepted = IsFinite(shown.trajectory) &&
+                      (record.predicted_clearance_m > 0 ||
+                       record.predicted_clearance_m > clearance_m(present, EndOf(shown)));
   } else {
     record.status = "kept";
     record.predicted_clearance_m = clearance_m(present, EndOf(present));
@@ -149,6 +169,27 @@ PlanRequest Replanner::NewHorizon(EpisodeTime start, const Eigen::VectorXd& q,
   request.v_start = v;
   request.q_goal = options_.q_goal;
   return request;
+}
+
+TimedPlan Replanner::Brake(EpisodeTime start, const TrajectoryPoint& from) const {
+  int num_steps = 1;
+  for (int j = 0; j < planner_.robot().num_joints(); ++j) {
+    const double a_max = planner_.robot().limits()[static_cast<std::size_t>(j)].a_max;
+    const double steps = std::abs(from.v(j)) / (a_max * options_.step_s);
+    num_steps = std::max(num_steps, static_cast<int>(std::ceil(std::min(steps, 1e6))));
+  }
+  num_steps = std::min(num_steps, num_states_ - 1);
+  const double brake_s = num_steps * options_.step_s;
+  const Eigen::Index n = from.q.size();
+  Trajectory plan{Eigen::VectorXd(num_states_), Eigen::MatrixXd(n, num_states_),
+                  Eigen::MatrixXd(n, num_states_)};
+  for (int k = 0; k < num_states_; ++k) {
+    const double t_s = std::min(k, num_steps) * options_.step_s;
+    plan.t_s(k) = k * options_.step_s;
+    plan.q.col(k) = from.q + (t_s - t_s * t_s / (2 * brake_s)) * from.v;
+    plan.v.col(k) = (1 - t_s / brake_s) * from.v;
+  }
+  return {std::move(plan), start};
 }
 
 bool Replanner::IsOffPlan(EpisodeTime now, const JointState& state) const {

@@ -39,8 +39,10 @@ struct TimedPlan {
 /// horizon ahead and steps aside likewise. A robot found further than 0.1 rad from its plan gets a
 /// new horizon from where it is.
 ///
-/// A plan is taken if it is predicted to be free, or else if it keeps more distance than going on
-/// with what runs would: waiting is a motion too.
+/// A plan is taken if it is predicted to be free. If it is not, two ways out are weighed as well: a
+/// new horizon to the goal, which may have more time and begins with another guess; and to brake at
+/// the robot's acceleration limits and wait. Then the one that keeps the most distance is taken,
+/// and none if going on with what runs keeps as much.
 class Replanner {
  public:
   /// `planner` and `world` are borrowed. @throws std::invalid_argument for options out of range.
@@ -50,8 +52,8 @@ class Replanner {
     /// To be followed from record.t_effect on, if one was found. It agrees with what runs until
     /// then, or it begins then.
     std::optional<TimedPlan> plan;
-    /// Its status is that of the planner, or "kept" if nothing was planned; its plan is the one
-    /// found or kept, with that one's clearance from the moment of effect on.
+    /// Its status is that of the planner, "braked", or "kept" if nothing was planned; its plan is
+    /// the one found or kept, with that one's clearance from the moment of effect on.
     CycleRecord record;
     double predict_s = 0;  ///< CPU seconds of this thread, for the report only
     double optimise_s = 0;
@@ -71,6 +73,8 @@ class Replanner {
   PlanRequest NewHorizon(EpisodeTime start, const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                          const DistanceField& field) const;
   bool IsOffPlan(EpisodeTime now, const JointState& state) const;
+  /// A whole horizon from `start`: comes to rest as fast as the robot may, and stays.
+  TimedPlan Brake(EpisodeTime start, const TrajectoryPoint& from) const;
 
   const Planner& planner_;
   WorldModel& world_;

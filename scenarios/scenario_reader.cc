@@ -298,18 +298,19 @@ double ReadRate(const YamlReader& map, const char* key) {
   return rate;
 }
 
-void ReadLoop(const YamlReader& top, Scenario& scenario) {
+void ReadReplanning(const YamlReader& top, Scenario& scenario) {
+  const YamlReader map = top.GetMap("replanning");
+  scenario.replan_rate_hz = ReadRate(map, "rate_hz");
+  scenario.latency_s = map.GetNonNegative("latency_s");
+  if (scenario.latency_s > scenario.horizon_s) map.Fail("latency_s", "must not exceed the horizon");
+  map.CheckNoUnknownKeys();
+}
+
+void ReadPerception(const YamlReader& top, Scenario& scenario) {
   scenario.knowledge = top.GetString("knowledge");
   scenario.predictor = top.Has("predictor") ? top.GetString("predictor") : "kalman_cv";
   scenario.lines["knowledge"] = top.Line("knowledge");
   scenario.lines["predictor"] = top.Line("predictor");
-  const YamlReader replanning = top.GetMap("replanning");
-  scenario.replan_rate_hz = ReadRate(replanning, "rate_hz");
-  scenario.latency_s = replanning.GetNonNegative("latency_s");
-  if (scenario.latency_s > scenario.horizon_s) {
-    replanning.Fail("latency_s", "must not exceed the horizon");
-  }
-  replanning.CheckNoUnknownKeys();
   scenario.sensor = ReadSensorSettings(top.GetMap("sensor"));
   scenario.lines["sensor.name"] = scenario.sensor.line;
   const int seed = top.GetInt("seed");
@@ -357,6 +358,12 @@ void Settle(YamlReader& top, const Settings& settings, Scenario& scenario) {
   }
 }
 
+// A world to look at needs no robot; what a robot needs asks for one.
+bool HasRobot(const YamlReader& top) {
+  const auto keys = {"robot", "task", "horizon", "planner", "replanning"};
+  return std::any_of(keys.begin(), keys.end(), [&](const char* key) { return top.Has(key); });
+}
+
 Scenario Read(YamlReader top, const std::string& file, const Settings& settings) {
   Scenario scenario;
   Settle(top, settings, scenario);
@@ -365,15 +372,21 @@ Scenario Read(YamlReader top, const std::string& file, const Settings& settings)
       top.Has("name") ? top.GetString("name") : std::filesystem::path(file).stem().string();
   scenario.description = top.GetString("description");
   std::set<std::string> names = {"floor", "self"};  // words of verdicts
-  ReadRobot(top, scenario);
-  ReadTask(top, scenario);
-  ReadHorizon(top, scenario);
+  const bool has_robot = HasRobot(top);
+  if (has_robot) {
+    ReadRobot(top, scenario);
+    ReadTask(top, scenario);
+    ReadHorizon(top, scenario);
+  }
   ReadWorkspace(top, scenario);
   scenario.floor_m = top.Has("floor_m") ? top.GetDouble("floor_m") : 0;
   ReadStaticBoxes(top, scenario, names);
   ReadMovingObstacles(top, scenario, names);
-  ReadPlanner(top, scenario);
-  ReadLoop(top, scenario);
+  if (has_robot) {
+    ReadPlanner(top, scenario);
+    ReadReplanning(top, scenario);
+  }
+  ReadPerception(top, scenario);
   top.CheckNoUnknownKeys();
   SeedMotions(scenario);
 

@@ -90,26 +90,51 @@ std::string MotionText(const Motion& motion) {
 
 const char* Word(bool value) { return value ? "true" : "false"; }
 
-}  // namespace
-
-std::string ToYaml(const Scenario& scenario) {
+std::string RobotText(const Scenario& scenario) {
   const auto configuration = [](const std::string& name, const Eigen::VectorXd& q) {
     return name.empty() ? List(q) : Quoted(name);
   };
+  return "robot:\n  model: " + Quoted(scenario.robot) + "\n  base: {" +
+         PoseKeys("position_m", scenario.X_WB) + "}\n" +
+         (scenario.mount.empty() ? "" : "  mount: " + scenario.mount + "\n") +
+         "task:\n  start: " + configuration(scenario.start_name, scenario.q_start) +
+         "\n  goal: " + configuration(scenario.goal_name, scenario.q_goal) +
+         "\nhorizon: {duration_s: " + Number(scenario.horizon_s) +
+         ", step_s: " + Number(scenario.step_s) + "}\n";
+}
+
+std::string PlannerText(const Scenario& scenario) {
+  std::string text = "planner:\n";
+  const auto line = [&](const char* key, const std::string& value) {
+    text += std::string("  ") + key + ": " + value + "\n";
+  };
+  line("name", Quoted(scenario.planner));
+  line("epsilon_m", Number(scenario.epsilon_m));
+  line("sigma_obs", Number(scenario.sigma_obs));
+  line("n_int", std::to_string(scenario.num_interpolated));
+  line("qc", Number(scenario.qc));
+  line("velocity_scale", Number(scenario.velocity_scale));
+  line("acceleration_scale", Number(scenario.acceleration_scale));
+  line("growth_sigmas", Number(scenario.growth_sigmas));
+  line("growth_limit_m", Number(scenario.growth_limit_m));
+  line("max_iterations", std::to_string(scenario.max_iterations));
+  line("position_limits", Word(scenario.position_limits));
+  line("velocity_limits", Word(scenario.velocity_limits));
+  line("acceleration_limits", Word(scenario.acceleration_limits));
+  return text + "replanning: {rate_hz: " + Number(scenario.replan_rate_hz) +
+         ", latency_s: " + Number(scenario.latency_s) + "}\n";
+}
+
+}  // namespace
+
+std::string ToYaml(const Scenario& scenario) {
   const GridSpec& grid = scenario.grid;
   std::string text;
   const auto line = [&](const std::string& row) { text += row + "\n"; };
   line("name: " + Quoted(scenario.name));
   line("description: " + Quoted(scenario.description));
-  line("robot:");
-  line("  model: " + Quoted(scenario.robot));
-  line("  base: {" + PoseKeys("position_m", scenario.X_WB) + "}");
-  if (!scenario.mount.empty()) line("  mount: " + scenario.mount);
-  line("task:");
-  line("  start: " + configuration(scenario.start_name, scenario.q_start));
-  line("  goal: " + configuration(scenario.goal_name, scenario.q_goal));
-  line("horizon: {duration_s: " + Number(scenario.horizon_s) +
-       ", step_s: " + Number(scenario.step_s) + "}");
+  const bool has_robot = !scenario.robot.empty();
+  if (has_robot) text += RobotText(scenario);
   line("workspace: {first_center_m: " + List(grid.first_center_m) +
        ", cell_m: " + Number(grid.cell_m) + ", cells: [" + std::to_string(grid.size[0]) + ", " +
        std::to_string(grid.size[1]) + ", " + std::to_string(grid.size[2]) + "]}");
@@ -127,24 +152,9 @@ std::string ToYaml(const Scenario& scenario) {
     if (!obstacle.appearance.empty()) line("    appearance: " + Quoted(obstacle.appearance));
     line("    motion: " + MotionText(obstacle.motion));
   }
-  line("planner:");
-  line("  name: " + Quoted(scenario.planner));
-  line("  epsilon_m: " + Number(scenario.epsilon_m));
-  line("  sigma_obs: " + Number(scenario.sigma_obs));
-  line("  n_int: " + std::to_string(scenario.num_interpolated));
-  line("  qc: " + Number(scenario.qc));
-  line("  velocity_scale: " + Number(scenario.velocity_scale));
-  line("  acceleration_scale: " + Number(scenario.acceleration_scale));
-  line("  growth_sigmas: " + Number(scenario.growth_sigmas));
-  line("  growth_limit_m: " + Number(scenario.growth_limit_m));
-  line("  max_iterations: " + std::to_string(scenario.max_iterations));
-  line(std::string("  position_limits: ") + Word(scenario.position_limits));
-  line(std::string("  velocity_limits: ") + Word(scenario.velocity_limits));
-  line(std::string("  acceleration_limits: ") + Word(scenario.acceleration_limits));
+  if (has_robot) text += PlannerText(scenario);
   line("knowledge: " + Quoted(scenario.knowledge));
   line("predictor: " + Quoted(scenario.predictor));
-  line("replanning: {rate_hz: " + Number(scenario.replan_rate_hz) +
-       ", latency_s: " + Number(scenario.latency_s) + "}");
   text += ToYaml(scenario.sensor);
   line("seed: " + std::to_string(scenario.seed));
   return text;

@@ -1,7 +1,9 @@
 #include "sim/simulation.h"
 
 #include "core/input_error.h"
+#include "sim/no_robot.h"
 #include "sim/sensors.h"
+#include "sim/simulated_robot.h"
 #include "sim/world_xml.h"
 
 namespace sidestep {
@@ -33,8 +35,16 @@ Simulation::Simulation(const Scenario& scenario, const RobotModel& robot,
       obstacles_(NamesOf(scenario.moving_obstacles)),
       world_(scenario, model_xml_, joints_, StartOf(scenario, robot)),
       truth_(world_),
-      robot_(
-          robot, &world_, [this] { truth_.Observe(); }, scenario.velocity_limits ? 1 : kUnlimited),
+      robot_(std::make_unique<SimulatedRobot>(
+          robot, &world_, [this] { truth_.Observe(); }, scenario.velocity_limits ? 1 : kUnlimited)),
+      sensor_(MakeSensor(scenario, world_)) {}
+
+Simulation::Simulation(const Scenario& scenario, const std::string& models_dir)
+    : model_xml_(BuildWorldXml(scenario, {}, models_dir)),
+      obstacles_(NamesOf(scenario.moving_obstacles)),
+      world_(scenario, model_xml_, {}, Eigen::VectorXd()),
+      truth_(world_),
+      robot_(std::make_unique<NoRobot>(&world_)),
       sensor_(MakeSensor(scenario, world_)) {}
 
 }  // namespace sidestep

@@ -9,7 +9,6 @@
 #include "robot/sensor.h"
 #include "robot/world_truth.h"
 #include "scenarios/scenario.h"
-#include "sim/simulated_robot.h"
 #include "sim/simulated_truth.h"
 #include "sim/world.h"
 
@@ -24,10 +23,12 @@ class Simulation {
   /// @throws InputError for model files that do not fit, a start that the robot does not have, or
   ///   an unknown sensor.
   Simulation(const Scenario& scenario, const RobotModel& robot, const std::string& models_dir);
+  /// The world of a scenario without a robot; robot() is then only its clock (sim/no_robot.h).
+  Simulation(const Scenario& scenario, const std::string& models_dir);
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  RobotInterface& robot() { return robot_; }
+  RobotInterface& robot() { return *robot_; }
   Sensor& sensor() { return *sensor_; }
   WorldTruth& truth() { return truth_; }
   const World& world() const { return world_; }
@@ -41,7 +42,7 @@ class Simulation {
   std::vector<std::string> joints_, obstacles_;
   World world_;
   SimulatedTruth truth_;
-  SimulatedRobot robot_;
+  std::unique_ptr<RobotInterface> robot_;
   std::unique_ptr<Sensor> sensor_;
 };
 

@@ -377,8 +377,10 @@ std::string BuildWorldXml(const Scenario& scenario, const std::vector<std::strin
   XMLElement* worldbody = Append(world, "worldbody");
   AddFloorAndLights(scenario, worldbody);
   AddCameras(scenario, worldbody);
-  MergeRobot(scenario, models_dir + "/" + scenario.robot + "/" + scenario.robot + ".xml", world);
-  RefuseNamesOfTheRobot(scenario, worldbody);
+  if (!scenario.robot.empty()) {
+    MergeRobot(scenario, models_dir + "/" + scenario.robot + "/" + scenario.robot + ".xml", world);
+    RefuseNamesOfTheRobot(scenario, worldbody);
+  }
   for (const StaticBox& box : scenario.static_boxes) AddStaticBox(box, worldbody);
   for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
     AddMovingObstacle(scenario, i, models_dir, worldbody);

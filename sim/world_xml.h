@@ -16,7 +16,8 @@ inline constexpr const char* kTopCamera = "top";
 /// Builds the whole world as one MJCF text that refers to no other file: it is what is simulated,
 /// stored with a recording and drawn from it.
 ///
-/// - The robot: `<models_dir>/<robot>/<robot>.xml`, its bodies in the body `robot` at X_WB, its
+/// - The robot, if the scenario has one: `<models_dir>/<robot>/<robot>.xml`, its bodies in the body
+/// `robot` at X_WB, its
 ///   defaults in a class of their own, so that they touch nothing else.
 /// - Static boxes: one fixed body each, body and geom named as in the scenario.
 /// - Moving obstacles: one mocap body each, its contact geom of the same name. Their pose is

@@ -20,7 +20,6 @@ GridSpec ClosedLoopGrid(int voxels_per_side) {
 FieldScene Walkway(double speed_m_s) {
   const OpenLoopExperiment experiment = MakeOpenLoopExperiment("panda_hsr");
   return {"walkway",
-          "an HSR between two tables",
           experiment.static_boxes,
           {{experiment.moving_box, speed_m_s * experiment.direction,
             std::numeric_limits<double>::infinity()}}};

@@ -25,17 +25,11 @@ std::vector<FieldScene> Scenes() {
   const std::vector<PublishedBox> table_and_cabinet =
       MakeOpenLoopExperiment("wam_single_pillar").static_boxes;
   return {
-      {"field_one_box", "a small box over table and cabinet", table_and_cabinet, {kHighBox}},
-      {"field_two_boxes",
-       "two small boxes over table and cabinet",
-       table_and_cabinet,
-       {kHighBox, kOtherHighBox}},
-      {"field_one_pillar", "a pillar beside table and cabinet", table_and_cabinet, {kPillar}},
-      {"field_two_pillars",
-       "two pillars beside table and cabinet",
-       table_and_cabinet,
-       {kOtherPillar, kPillar}},
-      {"field_large_block", "a block in an empty workspace", {}, {kBlock}},
+      {"field_one_box", table_and_cabinet, {kHighBox}},
+      {"field_two_boxes", table_and_cabinet, {kHighBox, kOtherHighBox}},
+      {"field_one_pillar", table_and_cabinet, {kPillar}},
+      {"field_two_pillars", table_and_cabinet, {kOtherPillar, kPillar}},
+      {"field_large_block", {}, {kBlock}},
   };
 }
 

@@ -19,7 +19,7 @@ struct FieldScene {
     double stop_s = 0;  ///< infinite: never
   };
 
-  std::string name, description;
+  std::string name;
   std::vector<PublishedBox> static_boxes;
   std::vector<MovingBox> moving_boxes;
 };

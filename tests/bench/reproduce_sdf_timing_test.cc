@@ -11,6 +11,7 @@
 #include "bench/reproduce/field_scene.h"
 #include "bench/reproduce/field_timer.h"
 #include "bench/reproduce/sdf_timing.h"
+#include "scenarios/scenario.h"
 
 namespace sidestep {
 namespace {
@@ -46,6 +47,29 @@ TEST_P(FieldScenes, MoveAsPublished) {
     }
     // Half a cell where it was last seen, and for each 0.4 s of the 0.9 s since then a whole one.
     EXPECT_LE(nearest_m, (0.5 + 0.9 / 0.4) * grid.cell_m);
+  }
+}
+
+TEST_P(FieldScenes, AreTheScenariosOfTheirNames) {
+  const FieldScene scene = MakeFieldScene(GetParam());
+  const Scenario scenario = LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/" + GetParam() + ".yaml");
+  EXPECT_EQ(scenario.robot, "");
+  EXPECT_EQ(scenario.grid, PublishedTimingGrid(96));
+  ASSERT_EQ(scenario.static_boxes.size(), scene.static_boxes.size());
+  for (std::size_t i = 0; i < scene.static_boxes.size(); ++i) {
+    EXPECT_EQ(scenario.static_boxes[i].X_WO.translation(), scene.static_boxes[i].center_m) << i;
+    EXPECT_EQ(scenario.static_boxes[i].size_m, scene.static_boxes[i].size_m) << i;
+  }
+  ASSERT_EQ(scenario.moving_obstacles.size(), scene.moving_boxes.size());
+  for (std::size_t i = 0; i < scene.moving_boxes.size(); ++i) {
+    const FieldScene::MovingBox& box = scene.moving_boxes[i];
+    const MovingObstacle& obstacle = scenario.moving_obstacles[i];
+    EXPECT_EQ(std::get<Box>(obstacle.shape).size_m, box.at_start.size_m) << i;
+    for (const double t_s : {0.0, 1.3, 2.9}) {
+      const Eigen::Vector3d p_WO =
+          box.at_start.center_m + std::min(t_s, box.stop_s) * box.velocity_m_s;
+      EXPECT_LT((PoseAt(obstacle, EpisodeTime(t_s)).translation() - p_WO).norm(), 1e-12) << i;
+    }
   }
 }
 

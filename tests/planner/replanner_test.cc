@@ -193,6 +193,22 @@ TEST(Replanner, WaitsWhileTheGoalIsTakenAndGoesWhenItIsFree) {
   EXPECT_LT((loop.StateAt(EpisodeTime(3.3)).q - kGoal).cwiseAbs().maxCoeff(), 1e-3);
 }
 
+TEST(Replanner, BrakesAndWaitsWhenTheGoalIsTakenOnItsWay) {
+  MovingBallWorld world = NothingThere();
+  Loop loop(world);
+  loop.RunUntil(1.5, 0.1, 0.1);
+  const Eigen::Vector3d p_WTip = MakePlanarArm().ComputeSphereCenters(kGoal, false).p_WS.col(5);
+  world.Replace(p_WTip, {0, 0, 0}, 0.1);
+  for (int i = 15; i < 40; ++i) {
+    EXPECT_EQ(loop.Cycle(0.1 * i, 0.1).record.status, i == 15 ? "braked" : "in_collision") << i;
+  }
+  EXPECT_EQ(loop.StateAt(EpisodeTime(4)).v, Eigen::Vector2d(0, 0));
+  EXPECT_GT(loop.min_clearance_m(), 0.01);
+  world.Replace({100, 0, 0}, {0, 0, 0}, 0.1);
+  for (int i = 40; i < 80; ++i) loop.Cycle(0.1 * i, 0.1);
+  EXPECT_LT((loop.StateAt(EpisodeTime(8)).q - kGoal).cwiseAbs().maxCoeff(), 1e-3);
+}
+
 TEST(Replanner, BeginsANewHorizonWhenThePlanIsSpoiltTooLate) {
   MovingBallWorld world = NothingThere();
   Loop loop(world);

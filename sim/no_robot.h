@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "robot/robot_interface.h"
+#include "sim/world.h"
+
+namespace sidestep {
+
+/// Stands for the robot of a world that has none: it has no joints, and lets time pass.
+class NoRobot final : public RobotInterface {
+ public:
+  /// @param world is stepped by this; must outlive it.
+  explicit NoRobot(World* world) : world_(*world) {}
+
+  JointState Read() const override { return {world_.time(), world_.q(), world_.v()}; }
+  /// @throws std::invalid_argument always.
+  void Submit(const Trajectory& trajectory, EpisodeTime start) override;
+  void Hold() override {}
+  void AdvanceTo(EpisodeTime t) override;
+  std::vector<ControlSample> TakeControlLog() override { return {}; }
+
+ private:
+  World& world_;
+};
+
+}  // namespace sidestep
