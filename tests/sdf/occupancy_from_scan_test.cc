@@ -82,8 +82,9 @@ TEST(OccupancyFromScan, FillsNothingThatOnlyEarlierScansShowed) {
     OccupancyGrid expected(grid);  // point by point
     for (Eigen::Index n = 0; n < scan.p_CP.cols(); ++n) {
       const Eigen::Vector3d p_WP = scan.X_WC * Eigen::Vector3d(scan.p_CP.col(n));
+      if (!p_WP.allFinite()) continue;
       const auto [i, j, k] = grid.CellOf(p_WP);
-      if (p_WP.allFinite() && grid.Contains(i, j, k)) expected.cells[grid.Index(i, j, k)] = 1;
+      if (grid.Contains(i, j, k)) expected.cells[grid.Index(i, j, k)] = 1;
     }
     EXPECT_EQ(rasteriser.Fill(scan).cells, expected.cells);
   }
