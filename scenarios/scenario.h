@@ -92,7 +92,7 @@ struct Scenario {
   std::string file;  ///< where it was read
 
   std::string robot;  ///< empty: a world without one; then there is no task, planner, ... either
-  Pose X_WB;  ///< of the robot's base
+  Pose X_WB;          ///< of the robot's base
   std::string
       mount;  ///< static box the robot stands on: its mount links may touch it; may be empty
   std::string start_name, goal_name;  ///< empty when given as joints
