@@ -68,6 +68,9 @@ INSTANTIATE_TEST_SUITE_P(
                 {"run", "hsr_walkway", "--latency-ms", "4000"},
                 {"--latency-ms: must not exceed the horizon"}},
         Mistake{"SettingWithoutAValue", {"run", "hsr_walkway", "--set", "seed"}, {"KEY=VALUE"}},
+        Mistake{"RunWithoutARobot",
+                {"run", "field_one_box"},
+                {"SCENARIO: 'field_one_box' has no robot", "sidestep field"}},
         Mistake{"SettingGivenTwice",
                 {"run", "hsr_walkway", "--set", "seed=1", "--set", "seed=2"},
                 {"--set seed: is given twice"}},
@@ -109,11 +112,13 @@ TEST(Help, NamesEveryCommandAndTheExitCodes) {
   }
 }
 
-TEST(Field, IsDrawnOneSliceForEachTimeAhead) {
+class Field : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(Field, IsDrawnOneSliceForEachTimeAhead) {
   const TemporaryFolder folder;
   const std::string file = folder.path() / "field.png";
   const Finished finished =
-      Sidestep({"field", "hsr_walkway", "--time", "0.2", "--ahead", "0,0.4", "--out", file});
+      Sidestep({"field", GetParam(), "--time", "0.2", "--ahead", "0,0.4", "--out", file});
   EXPECT_EQ(finished.exit_code, 0) << finished.err;
   std::ifstream stream(file, std::ios::binary);
   const std::string png{std::istreambuf_iterator<char>(stream), {}};
@@ -125,6 +130,10 @@ TEST(Field, IsDrawnOneSliceForEachTimeAhead) {
   EXPECT_EQ(big_endian(18), 2 * 3 * 96 + 6);  // two slices of 96 cells, a gap between them
   EXPECT_EQ(big_endian(22), 3 * 96);
 }
+
+INSTANTIATE_TEST_SUITE_P(WithAndWithoutARobot, Field,
+                         ::testing::Values("hsr_walkway", "field_two_pillars"),
+                         [](const auto& test) { return test.param; });
 
 TEST(List, ShowsWhatCanBeNamed) {
   const Finished finished = Sidestep({"list"});
