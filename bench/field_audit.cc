@@ -15,6 +15,9 @@ namespace {
 
 constexpr double kNearCells = 1.75;
 
+// Below every error, so that a place inside solids is the worst only where there is no other.
+constexpr double kInsideRank_m = -0.5;
+
 double AngleDeg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / M_PI;
 }
@@ -81,7 +84,6 @@ FieldAudit::FieldAudit(const Scenario& scenario, std::vector<double> ahead_s, in
                     grid.cell_m * std::uniform_real_distribution<double>(0, last)(random);
     }
   }
-  worst_.field_m = worst_.truth_m = 0;
 }
 
 AuditZone FieldAudit::ZoneOf(double truth_m, double clamp_m) const {
@@ -92,15 +94,14 @@ AuditZone FieldAudit::ZoneOf(double truth_m, double clamp_m) const {
   return truth_m <= clamp_m ? AuditZone::kEdge : AuditZone::kBeyond;
 }
 
-void FieldAudit::Look(EpisodeTime t, std::shared_ptr<const DistanceField> field,
-                      const WorldTruth& truth) {
-  const double clamp_m = field->max_distance_m();
+void FieldAudit::Look(EpisodeTime t, const DistanceField& field, const WorldTruth& truth) {
+  const double clamp_m = field.max_distance_m();
+  const double worst_before_m = worst_error_m_;
   DistanceSamples samples;
   for (std::size_t n = 0; n < ahead_s_.size(); ++n) {
     const EpisodeTime asked = t + HorizonOffset(ahead_s_[n]);
-    const std::vector<ObjectObservation> obstacles = truth.ObstaclesAt(asked);
-    const TrueWorld world(scenario_, obstacles);
-    field->SampleMany(p_WQ_, asked, samples);
+    const TrueWorld world(scenario_, truth.ObstaclesAt(asked));
+    field.SampleMany(p_WQ_, asked, samples);
     for (Eigen::Index s = 0; s < p_WQ_.cols(); ++s) {
       const double truth_m = world.Distance(p_WQ_.col(s));
       const AuditZone zone = ZoneOf(truth_m, clamp_m);
@@ -111,13 +112,13 @@ void FieldAudit::Look(EpisodeTime t, std::shared_ptr<const DistanceField> field,
       if ((zone == AuditZone::kNear || zone == AuditZone::kMargin) && !gradient_W.isZero(0)) {
         errors.gradient_deg.push_back(AngleDeg(gradient_W, world.Gradient(p_WQ_.col(s))));
       }
-      const double worst_m = std::abs(worst_.field_m - std::min(worst_.truth_m, clamp_m));
-      if (worst_field_ && (zone == AuditZone::kInside || error_m <= worst_m)) continue;
+      const double rank_m = zone == AuditZone::kInside ? kInsideRank_m : error_m;
+      if (rank_m <= worst_error_m_) continue;
+      worst_error_m_ = rank_m;
       worst_ = {t, asked, p_WQ_.col(s), samples.distance_m(s), truth_m};
-      worst_field_ = field;
-      worst_obstacles_ = obstacles;
     }
   }
+  if (worst_error_m_ > worst_before_m) worst_grids_ = GridsAt(worst_.t, field, truth);
 }
 
 std::vector<AuditRow> FieldAudit::Rows() const {
@@ -137,20 +138,23 @@ std::vector<AuditRow> FieldAudit::Rows() const {
   return rows;
 }
 
-AuditGrids FieldAudit::WorstGrids() const {
-  if (!worst_field_) throw std::invalid_argument("field audit: nothing was looked at");
+AuditGrids FieldAudit::GridsAt(EpisodeTime t, const DistanceField& field,
+                               const WorldTruth& truth) const {
   const GridSpec& grid = scenario_.grid;
-  const TrueWorld world(scenario_, worst_obstacles_);
+  const TrueWorld world(scenario_, truth.ObstaclesAt(t));
+  const double clamp_m = field.max_distance_m();
   AlignedVector<float> field_m, truth_m;
   field_m.reserve(grid.num_cells());
   truth_m.reserve(grid.num_cells());
+  Eigen::Matrix3Xd p_WQ(3, grid.size[0]);  // a row at a time
+  DistanceSamples samples;
   for (int k = 0; k < grid.size[2]; ++k) {
     for (int j = 0; j < grid.size[1]; ++j) {
+      for (int i = 0; i < grid.size[0]; ++i) p_WQ.col(i) = grid.Center(i, j, k);
+      field.SampleMany(p_WQ, t, samples);
       for (int i = 0; i < grid.size[0]; ++i) {
-        const Eigen::Vector3d p_WQ = grid.Center(i, j, k);
-        field_m.push_back(static_cast<float>(worst_field_->Sample(p_WQ, worst_.t).distance_m));
-        truth_m.push_back(
-            static_cast<float>(std::min(world.Distance(p_WQ), worst_field_->max_distance_m())));
+        field_m.push_back(static_cast<float>(samples.distance_m(i)));
+        truth_m.push_back(static_cast<float>(std::min(world.Distance(p_WQ.col(i)), clamp_m)));
       }
     }
   }

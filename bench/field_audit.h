@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 #include <map>
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -78,16 +78,17 @@ class FieldAudit {
   /// @param ahead_s which times are asked about, after each cycle; each >= 0.
   FieldAudit(const Scenario& scenario, std::vector<double> ahead_s, int num_points);
 
-  /// Compares the field of one planning cycle.
-  void Look(EpisodeTime t, std::shared_ptr<const DistanceField> field, const WorldTruth& truth);
+  /// Compares the field of one planning cycle. Neither is asked anything afterwards: fields of full
+  /// knowledge end with their world.
+  void Look(EpisodeTime t, const DistanceField& field, const WorldTruth& truth);
 
   /// One row a time and a zone that had points.
   std::vector<AuditRow> Rows() const;
   /// The place outside solids and within the margin, by the truth or by the field, that was most
   /// wrong. There must have been a Look.
   const AuditPlace& worst() const { return worst_; }
-  /// Everything at the time of the worst place.
-  AuditGrids WorstGrids() const;
+  /// Everything at the time of the worst place. There must have been a Look.
+  const AuditGrids& worst_grids() const { return *worst_grids_; }
 
  private:
   struct Errors {
@@ -95,14 +96,15 @@ class FieldAudit {
   };
 
   AuditZone ZoneOf(double truth_m, double clamp_m) const;
+  AuditGrids GridsAt(EpisodeTime t, const DistanceField& field, const WorldTruth& truth) const;
 
   Scenario scenario_;
   std::vector<double> ahead_s_;
   Eigen::Matrix3Xd p_WQ_;
   std::map<std::pair<std::size_t, AuditZone>, Errors> errors_;  // by time ahead and zone
   AuditPlace worst_;
-  std::shared_ptr<const DistanceField> worst_field_;
-  std::vector<ObjectObservation> worst_obstacles_;
+  double worst_error_m_ = -1;
+  std::optional<AuditGrids> worst_grids_;
 };
 
 }  // namespace sidestep

@@ -11,10 +11,12 @@
 #include "bench/field_audit.h"
 #include "bench/result_file.h"
 #include "cli/command.h"
+#include "cli/heat_slice.h"
 #include "cli/number_range.h"
 #include "cli/wiring.h"
 #include "core/input_error.h"
-#include "render/image.h"
+#include "render/font.h"
+#include "render/gl_context.h"
 #include "render/video_writer.h"
 #include "sdf/map/nrrd_file.h"
 
@@ -29,44 +31,6 @@ struct AuditOptions {
   std::string out;
   bool json = false;
 };
-
-// Black, red, yellow, white, as iron when it is heated; u from 0 to 1.
-Color Heat(double u) {
-  const auto channel = [](double x) {
-    return static_cast<std::uint8_t>(std::lround(255 * std::clamp(x, 0.0, 1.0)));
-  };
-  return {channel(3 * u), channel(3 * u - 1), channel(3 * u - 2)};
-}
-
-// The error in the horizontal layer of cells of a place, seen from above, +y upwards; solids in
-// grey, the place in a green frame.
-Image HeatSlice(const AuditGrids& grids, const Eigen::Vector3d& p_W) {
-  constexpr int kPixels = 6;  // a cell
-  constexpr Color kSolid{110, 110, 120}, kPlace{60, 255, 60};
-  const GridSpec& grid = grids.field_W.spec();
-  const auto [nx, ny, nz] = grid.size;
-  const auto [pi, pj, pk] = grid.CellOf(p_W);
-  const int k = std::clamp(pk, 0, nz - 1);
-  const auto error_m = [&](int i, int j) {
-    return std::abs(grids.field_W.At(i, j, k) - grids.truth_W.At(i, j, k));
-  };
-  float largest_m = 1e-6F;
-  for (int j = 0; j < ny; ++j) {
-    for (int i = 0; i < nx; ++i) {
-      if (grids.truth_W.At(i, j, k) >= 0) largest_m = std::max(largest_m, error_m(i, j));
-    }
-  }
-  Image image(nx * kPixels, ny * kPixels);
-  for (int j = 0; j < ny; ++j) {
-    for (int i = 0; i < nx; ++i) {
-      const PixelRect cell{i * kPixels, (ny - 1 - j) * kPixels, kPixels, kPixels};
-      const bool solid = grids.truth_W.At(i, j, k) < 0;
-      image.Fill(cell, solid ? kSolid : Heat(double{error_m(i, j) / largest_m}));
-    }
-  }
-  image.Outline({(pi - 1) * kPixels, (ny - 2 - pj) * kPixels, 3 * kPixels, 3 * kPixels}, kPlace, 2);
-  return image;
-}
 
 OccupancyGrid TrueOccupancy(const SdfGrid& truth_W) {
   OccupancyGrid occupancy(truth_W.spec());
@@ -85,16 +49,26 @@ SdfGrid Difference(const AuditGrids& grids) {
 
 void PrintRows(const std::vector<AuditRow>& rows) {
   std::printf(
-      "ahead s  zone       points   error mm: median      p99      max"
-      "   gradient deg: median     p99\n");
+      "                         error, mm                  gradient off by, degrees\n"
+      "ahead s  zone      points  median     p99     max    median    p99    max\n");
   for (const AuditRow& row : rows) {
-    std::printf("%7.2f  %-7s %9zu %18.2f %8.2f %8.2f", row.ahead_s, ToString(row.zone).c_str(),
+    std::printf("%7.2f  %-7s %8zu %7.2f %7.2f %7.2f", row.ahead_s, ToString(row.zone).c_str(),
                 row.num_points, 1e3 * row.median_m, 1e3 * row.p99_m, 1e3 * row.max_m);
     if (!std::isnan(row.gradient_median_deg)) {
-      std::printf(" %22.2f %7.2f", row.gradient_median_deg, row.gradient_p99_deg);
+      std::printf("   %7.2f %6.2f %6.2f", row.gradient_median_deg, row.gradient_p99_deg,
+                  row.gradient_max_deg);
     }
     std::printf("\n");
   }
+}
+
+// What the picture shows, in two lines.
+std::vector<std::string> PictureTitle(const Scenario& scenario, const AuditPlace& worst) {
+  char what[128], when[128];
+  std::snprintf(what, sizeof(what), ": |field - truth| at z = %.2f m", worst.p_W.z());
+  std::snprintf(when, sizeof(when), "; made at %.2f s, asked about %.2f s", worst.t_cycle.seconds(),
+                worst.t.seconds());
+  return {scenario.name + what, "knowledge: " + scenario.knowledge + when};
 }
 
 std::string Json(const std::vector<AuditRow>& rows, const AuditPlace& worst) {
@@ -131,12 +105,12 @@ int Audit(const AuditOptions& options) {
 
   FieldAudit audit(problem.scenario, options.ahead_s, options.num_points);
   int num_cycles = 0;
-  RunEpisode(
-      problem.scenario, problem.robot, SimulatedWorlds(paths),
-      [&](EpisodeTime t, std::shared_ptr<const DistanceField> field, const WorldTruth* truth) {
-        audit.Look(t, std::move(field), *truth);
-        ++num_cycles;
-      });
+  RunEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths),
+             [&](EpisodeTime t, const std::shared_ptr<const DistanceField>& field,
+                 const WorldTruth* truth) {
+               audit.Look(t, *field, *truth);
+               ++num_cycles;
+             });
   if (num_cycles == 0) {
     std::fprintf(stderr, "audit: the episode had no planning cycle\n");
     return 1;
@@ -144,8 +118,10 @@ int Audit(const AuditOptions& options) {
 
   const std::vector<AuditRow> rows = audit.Rows();
   const AuditPlace& worst = audit.worst();
-  const AuditGrids grids = audit.WorstGrids();
-  WritePng(HeatSlice(grids, worst.p_W), out + "/slice.png");
+  const AuditGrids& grids = audit.worst_grids();
+  const GlContext gl;  // has the letters
+  WritePng(DrawHeatSlice(grids, worst.p_W, PictureTitle(problem.scenario, worst), Font(gl)),
+           out + "/slice.png");
   WriteNrrd(grids.field_W, out + "/field.nrrd");
   WriteNrrd(grids.truth_W, out + "/truth.nrrd");
   WriteNrrd(Difference(grids), out + "/difference.nrrd");
@@ -160,8 +136,8 @@ int Audit(const AuditOptions& options) {
               problem.scenario.knowledge.c_str());
   PrintRows(rows);
   std::printf(
-      "worst in free space: %.1f mm instead of %.1f mm at (%.3f, %.3f, %.3f) m, asked at "
-      "%.2f s about %.2f s\n",
+      "most wrong in free space: %.1f mm instead of %.1f mm at (%.3f, %.3f, %.3f) m; field made at "
+      "%.2f s, asked about %.2f s\n",
       1e3 * worst.field_m, 1e3 * worst.truth_m, worst.p_W.x(), worst.p_W.y(), worst.p_W.z(),
       worst.t_cycle.seconds(), worst.t.seconds());
   std::printf(
@@ -197,6 +173,16 @@ void AddAuditCommand(CommandLine& line) {
       ->capture_default_str();
   audit->add_option("--out", options->out, "Folder for the results [out/SCENARIO/audit]");
   audit->add_flag("--json", options->json, "Print audit.json instead of the table");
+  audit->footer(
+      "The error is |field - min(truth, clamp)|: the clamp is the planner's safety margin plus "
+      "its\n"
+      "largest sphere. Zones, by the true distance d:\n"
+      "  inside  d < 0                          near  0 <= d < 1.75 cells\n"
+      "  margin  from there to clamp - 1 cell   edge  from there to the clamp\n"
+      "  beyond  d > clamp: the field should answer its clamp\n"
+      "Fields and truth of the most wrong place outside solids are written as NRRD, which "
+      "ParaView\n"
+      "and Python read, and as a heat picture of one layer, slice.png.");
   audit->callback([&line, options] { line.exit_code = Audit(*options); });
 }
 

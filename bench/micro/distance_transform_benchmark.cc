@@ -58,6 +58,13 @@ void TransformWithAvx2(benchmark::State& state, DistanceConvention convention,
   Transform(state, convention, max_distance_cells);
 }
 
+void SimpleTransform(benchmark::State& state) {
+  const OccupancyGrid grid = FurnishedRoom(static_cast<int>(state.range(0)), kPillar);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(ComputeSignedDistance(grid, DistanceConvention::kBwdist));
+  }
+}
+
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 void Sizes(benchmark::internal::Benchmark* benchmark) {
@@ -76,6 +83,7 @@ BENCHMARK_CAPTURE(TransformWithAvx2, full, kBwdist, kUnbounded)
 BENCHMARK_CAPTURE(TransformWithAvx2, bounded, kBwdist, 10)
     ->Name("edt/bounded10_avx2")
     ->Apply(Sizes);
+BENCHMARK(SimpleTransform)->Name("edt/simple")->Arg(96)->Arg(256)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace sidestep

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -94,6 +96,15 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"FieldAheadIsAWord",
                 {"field", "hsr_walkway", "--out", "x.png", "--ahead", "0,soon"},
                 {"--ahead", "soon"}},
+        Mistake{"AuditOfAnUnknownScenario",
+                {"audit", "hsr_walkaway"},
+                {"hsr_walkaway", "known: hsr_walkway"}},
+        Mistake{"AuditAheadIsAWord", {"audit", "hsr_walkway", "--ahead", "0,soon"}, {"--ahead"}},
+        Mistake{"AuditAheadIsInThePast", {"audit", "hsr_walkway", "--ahead=-1"}, {"--ahead"}},
+        Mistake{"AuditOfNoPoints", {"audit", "hsr_walkway", "--points", "0"}, {"--points"}},
+        Mistake{"AuditOutIsAFile",
+                {"audit", "hsr_walkway", "--out", SIDESTEP_PROGRAM},
+                {"--out", "cannot be made a folder"}},
         Mistake{"ListOfAnUnknownKind", {"list", "wishes"}, {"KIND: must be one of scenarios,"}},
         Mistake{"SensorWithoutItsSettings",
                 {"run", "hsr_walkway", "--set", "sensor.name=depth_camera"},
@@ -134,6 +145,34 @@ TEST_P(Field, IsDrawnOneSliceForEachTimeAhead) {
 INSTANTIATE_TEST_SUITE_P(WithAndWithoutARobot, Field,
                          ::testing::Values("hsr_walkway", "field_two_pillars"),
                          [](const auto& test) { return test.param; });
+
+TEST(Audit, LeavesATableFieldsAndAPicture) {
+  const TemporaryFolder temporary;
+  const std::string folder = temporary.path();
+  const Finished finished = Sidestep({"audit", "hsr_walkway", "--knowledge", "full_knowledge",
+                                      "--points", "2000", "--ahead", "0,1", "--out", folder});
+  EXPECT_EQ(finished.exit_code, 0) << finished.err;
+  EXPECT_THAT(finished.out, AllOf(HasSubstr("knowledge: full_knowledge"), HasSubstr("margin"),
+                                  HasSubstr("most wrong in free space")));
+  const auto size = [&](const char* file) { return std::filesystem::file_size(folder + file); };
+  const std::uintmax_t num_cells = 96 * 96 * 96;
+  for (const char* file : {"/field.nrrd", "/truth.nrrd", "/difference.nrrd"}) {
+    EXPECT_GT(size(file), 4 * num_cells) << file;
+  }
+  EXPECT_GT(size("/occupancy.nrrd"), num_cells);
+  EXPECT_GT(size("/slice.png"), 1000u);
+  std::ifstream stream(folder + "/audit.json");
+  const nlohmann::json audit = nlohmann::json::parse(stream);
+  // Who knows the truth is wrong by what cells cannot tell: the tables end half a cell off.
+  std::size_t num_zones = 0;
+  for (const auto& row : audit.at("errors")) {
+    if (row.at("zone") != "margin") continue;
+    ++num_zones;
+    EXPECT_LT(row.at("median_m").get<double>(), 0.0205);
+    EXPECT_LT(row.at("p99_m").get<double>(), 0.04);
+  }
+  EXPECT_EQ(num_zones, 2u);
+}
 
 TEST(List, ShowsWhatCanBeNamed) {
   const Finished finished = Sidestep({"list"});
