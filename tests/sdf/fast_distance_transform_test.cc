@@ -6,11 +6,9 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <new>
 #include <random>
 #include <span>
 #include <stdexcept>
@@ -20,27 +18,7 @@
 
 #include "sdf/map/fast_distance_transform_envelope.h"
 #include "tests/sdf/only_target.h"
-
-namespace {
-std::atomic<int> num_allocations = 0;
-
-void* Allocate(std::size_t size, std::size_t alignment) {
-  ++num_allocations;
-  void* memory = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
-}
-}  // namespace
-
-// This program counts its allocations.
-void* operator new(std::size_t size) { return Allocate(size, alignof(std::max_align_t)); }
-void* operator new(std::size_t size, std::align_val_t alignment) {
-  return Allocate(size, static_cast<std::size_t>(alignment));
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+#include "tests/support/allocations.h"
 
 namespace sidestep {
 namespace {
@@ -285,11 +263,11 @@ TEST(FastDistanceTransform, AllocatesNothingForAGridNoLargerThanTheLast) {
   std::vector<float> distance_m(large.cells.size());
   FastDistanceTransform transform;
   transform.Compute(large, {}, distance_m);
-  const int before = num_allocations;
+  const int before = CountAllocations().count;
   EXPECT_GT(before, 0);
   transform.Compute(large, {}, distance_m);
   transform.Compute(small, {}, std::span(distance_m).first(small.cells.size()));
-  EXPECT_EQ(num_allocations, before);
+  EXPECT_EQ(CountAllocations().count, before);
 }
 
 TEST(FastDistanceTransform, AnswersWithTheLimitWhereThereIsNoSurface) {
