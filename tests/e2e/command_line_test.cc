@@ -96,9 +96,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"FieldAheadIsAWord",
                 {"field", "hsr_walkway", "--out", "x.png", "--ahead", "0,soon"},
                 {"--ahead", "soon"}},
-        Mistake{"AuditOfAnUnknownScenario",
-                {"audit", "hsr_walkaway"},
-                {"hsr_walkaway", "known: hsr_walkway"}},
+        Mistake{
+            "AuditOfAnUnknownScenario", {"audit", "hsr_walkaway"}, {"hsr_walkaway", "hsr_walkway"}},
         Mistake{"AuditAheadIsAWord", {"audit", "hsr_walkway", "--ahead", "0,soon"}, {"--ahead"}},
         Mistake{"AuditAheadIsInThePast", {"audit", "hsr_walkway", "--ahead=-1"}, {"--ahead"}},
         Mistake{"AuditOfNoPoints", {"audit", "hsr_walkway", "--points", "0"}, {"--points"}},
