@@ -18,7 +18,7 @@ struct Entry {
   std::unique_ptr<Planner> (*make)(const RobotModel& robot, const PlannerSettings& settings);
 };
 constexpr Entry kPlanners[] = {
-#define SIDESTEP_PLANNER(name, make, file) {name, &make},
+#define SIDESTEP_PLANNER(name, make, file) {name, &(make)},
 #include "planner/planners.def"
 #undef SIDESTEP_PLANNER
 };

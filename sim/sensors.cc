@@ -21,7 +21,7 @@ struct Entry {
   std::unique_ptr<Sensor> (*make)(const Scenario&, const World&);
 };
 constexpr Entry kSensors[] = {
-#define SIDESTEP_SENSOR(name, settings, make, file) {name, settings, &make},
+#define SIDESTEP_SENSOR(name, settings, make, file) {name, settings, &(make)},
 #include "sim/sensors.def"
 #undef SIDESTEP_SENSOR
 };

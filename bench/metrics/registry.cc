@@ -11,7 +11,7 @@ namespace {
 
 constexpr Metric kMetrics[] = {
 #define SIDESTEP_METRIC(name, unit, lower_is_better, meaning, compute, file) \
-  {name, unit, lower_is_better, meaning, &compute},
+  {name, unit, lower_is_better, meaning, &(compute)},
 #include "bench/metrics/metrics.def"
 #undef SIDESTEP_METRIC
 };

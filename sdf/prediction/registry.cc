@@ -15,7 +15,7 @@ struct Entry {
   std::unique_ptr<ObstaclePredictor> (*make)();
 };
 constexpr Entry kPredictors[] = {
-#define SIDESTEP_PREDICTOR(name, make, file) {name, &make},
+#define SIDESTEP_PREDICTOR(name, make, file) {name, &(make)},
 #include "sdf/prediction/predictors.def"
 #undef SIDESTEP_PREDICTOR
 };
