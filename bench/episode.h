@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/recording.h"
@@ -26,6 +27,21 @@ struct EpisodeWorld {
   std::string model_xml;        ///< to draw it
   std::vector<std::string> joints, obstacles;
 };
+
+/// The world that `source` holds (a Simulation, or what stands for it on hardware), kept alive by
+/// it. A template, because bench knows the interfaces of robot/ alone.
+template <class Source>
+EpisodeWorld MakeEpisodeWorld(std::shared_ptr<Source> source) {
+  EpisodeWorld world;
+  world.robot = &source->robot();
+  world.sensor = &source->sensor();
+  world.truth = &source->truth();
+  world.model_xml = source->model_xml();
+  world.joints = source->joints();
+  world.obstacles = source->obstacles();
+  world.owner = std::move(source);
+  return world;
+}
 
 /// Makes the world of a scenario; simulation and hardware each have one.
 using WorldFactory = std::function<EpisodeWorld(const Scenario&, const RobotModel&)>;

@@ -91,18 +91,6 @@ Problem AddRobot(Scenario scenario, const DataPaths& paths) {
   return {std::move(scenario), std::move(robot)};
 }
 
-EpisodeWorld MakeWorld(std::shared_ptr<Simulation> simulation) {
-  EpisodeWorld world;
-  world.robot = &simulation->robot();
-  world.sensor = &simulation->sensor();
-  world.truth = &simulation->truth();
-  world.model_xml = simulation->model_xml();
-  world.joints = simulation->joints();
-  world.obstacles = simulation->obstacles();
-  world.owner = std::move(simulation);
-  return world;
-}
-
 }  // namespace
 
 Settings ParseSettings(const std::vector<std::string>& texts) {
@@ -132,7 +120,7 @@ Problem LoadProblem(const std::string& name, const Overrides& overrides, const D
 Scene LoadScene(const std::string& name, const Overrides& overrides, const DataPaths& paths) {
   Scenario scenario = LoadOverridden(name, overrides, paths);
   if (scenario.robot.empty()) {
-    EpisodeWorld world = MakeWorld(std::make_shared<Simulation>(scenario, paths.models));
+    EpisodeWorld world = MakeEpisodeWorld(std::make_shared<Simulation>(scenario, paths.models));
     return {std::move(scenario), std::move(world)};
   }
   Problem problem = AddRobot(std::move(scenario), paths);
@@ -142,7 +130,7 @@ Scene LoadScene(const std::string& name, const Overrides& overrides, const DataP
 
 WorldFactory SimulatedWorlds(const DataPaths& paths) {
   return [models = paths.models](const Scenario& scenario, const RobotModel& robot) {
-    return MakeWorld(std::make_shared<Simulation>(scenario, robot, models));
+    return MakeEpisodeWorld(std::make_shared<Simulation>(scenario, robot, models));
   };
 }
 

@@ -40,16 +40,7 @@ Scenario SwingingScenario() {
 
 Recording Record(const Scenario& scenario) {
   const auto make_world = [](const Scenario& of, const RobotModel& robot) {
-    auto simulation = std::make_shared<Simulation>(of, robot, kTestModels);
-    EpisodeWorld world;
-    world.robot = &simulation->robot();
-    world.sensor = &simulation->sensor();
-    world.truth = &simulation->truth();
-    world.model_xml = simulation->model_xml();
-    world.joints = simulation->joints();
-    world.obstacles = simulation->obstacles();
-    world.owner = simulation;
-    return world;
+    return MakeEpisodeWorld(std::make_shared<Simulation>(of, robot, kTestModels));
   };
   return RunEpisode(scenario, TwoLink(scenario), make_world).recording;
 }

@@ -34,16 +34,7 @@ Problem Load(const std::string& name, const Settings& settings) {
 }
 
 EpisodeWorld MakeWorld(const Scenario& scenario, const RobotModel& robot) {
-  auto simulation = std::make_shared<Simulation>(scenario, robot, kModels);
-  EpisodeWorld world;
-  world.robot = &simulation->robot();
-  world.sensor = &simulation->sensor();
-  world.truth = &simulation->truth();
-  world.model_xml = simulation->model_xml();
-  world.joints = simulation->joints();
-  world.obstacles = simulation->obstacles();
-  world.owner = std::move(simulation);
-  return world;
+  return MakeEpisodeWorld(std::make_shared<Simulation>(scenario, robot, kModels));
 }
 
 // The bytes of an episode's trace.

@@ -19,16 +19,8 @@ int Run() {
   const auto robot = sidestep::RobotModel::Load(data + "/models", scenario.robot, scenario.X_WB);
   sidestep::ResolveTask(scenario, robot);
   const auto make_world = [&](const sidestep::Scenario& of, const sidestep::RobotModel& arm) {
-    auto simulation = std::make_shared<sidestep::Simulation>(of, arm, data + "/models");
-    sidestep::EpisodeWorld world;
-    world.robot = &simulation->robot();
-    world.sensor = &simulation->sensor();
-    world.truth = &simulation->truth();
-    world.model_xml = simulation->model_xml();
-    world.joints = simulation->joints();
-    world.obstacles = simulation->obstacles();
-    world.owner = simulation;
-    return world;
+    return sidestep::MakeEpisodeWorld(
+        std::make_shared<sidestep::Simulation>(of, arm, data + "/models"));
   };
   const sidestep::EpisodeResult result = sidestep::RunEpisode(scenario, robot, make_world);
   sidestep::WriteRecording(result.recording, "outside.h5");
