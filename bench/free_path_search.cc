@@ -3,20 +3,21 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 #include <vector>
 
 #include "bench/planner_settings.h"
+#include "core/random.h"
 #include "core/shape.h"
+#include "planner/first_guess.h"
 #include "planner/guarded_spheres.h"
 #include "planner/registry.h"
+#include "planner/self_clearance.h"
 #include "sdf/distance_field.h"
 
 namespace sidestep {
 namespace {
 
 constexpr double kJudgeStep_s = 0.005, kAfterGoal_s = 0.5;
-constexpr double kViaSpread_rad = 0.7;
 constexpr double kGradientStep_m = 1e-4;
 
 // The distance to the true shapes, where they truly will be.
@@ -91,43 +92,20 @@ class TrueField final : public DistanceField {
 
 double TrueClearance(const RobotModel& robot, const TrueField& field, const Trajectory& motion) {
   const std::vector<int> guarded = GuardedSpheres(robot);
+  const SelfClearance links(robot);
   const double end_s = motion.t_s(motion.num_states() - 1) + kAfterGoal_s;
   double least_m = std::numeric_limits<double>::infinity();
   for (int i = 0; i * kJudgeStep_s <= end_s; ++i) {
     const double t_s = i * kJudgeStep_s;
     const TrajectoryPoint point = Sample(motion, HorizonOffset(t_s));
     const SphereCenters centers = robot.ComputeSphereCenters(point.q, false);
+    least_m = std::min(least_m, links.Least(centers.p_WS));
     for (const int s : guarded) {
       const double distance_m = field.Sample(centers.p_WS.col(s), EpisodeTime(t_s)).distance_m;
       least_m = std::min(least_m, distance_m - robot.sphere_radii_m()(s));
     }
   }
   return least_m;
-}
-
-// From start to goal over a random configuration at a random time, at rest at both ends.
-Trajectory RandomGuess(const PlanRequest& request, std::mt19937_64& generator) {
-  std::normal_distribution<double> off(0, kViaSpread_rad);
-  std::uniform_real_distribution<double> share(0.2, 0.8);
-  const int K = request.num_states;
-  const Eigen::Index n = request.q_start.size();
-  const double first_s = (request.num_fixed - 1) * request.step_s;
-  const double last_s = (K - 1) * request.step_s;
-  Trajectory knots{Eigen::VectorXd(3), Eigen::MatrixXd(n, 3), Eigen::MatrixXd::Zero(n, 3)};
-  knots.t_s << first_s, first_s + share(generator) * (last_s - first_s), last_s;
-  const double line = share(generator);
-  knots.q << request.q_start, request.q_start + line * (request.q_goal - request.q_start),
-      request.q_goal;
-  for (Eigen::Index j = 0; j < n; ++j) knots.q(j, 1) += off(generator);
-  knots.v.col(1) = (request.q_goal - request.q_start) / (last_s - first_s);
-  Trajectory guess{Eigen::VectorXd::LinSpaced(K, 0, K - 1) * request.step_s,
-                   request.q_start.replicate(1, K), Eigen::MatrixXd::Zero(n, K)};
-  for (int k = request.num_fixed; k < K; ++k) {
-    const TrajectoryPoint point = Sample(knots, HorizonOffset(guess.t_s(k)));
-    guess.q.col(k) = point.q;
-    guess.v.col(k) = point.v;
-  }
-  return guess;
 }
 
 }  // namespace
@@ -145,11 +123,14 @@ FreePath SearchFreePath(const Scenario& scenario, const RobotModel& robot, int m
   request.q_goal = scenario.q_goal;
   request.num_fixed = 1 + static_cast<int>(std::ceil(scenario.latency_s / scenario.step_s - 1e-9));
 
-  std::mt19937_64 generator(seed);
+  RandomStream random(seed, "free path search");
   FreePath best;
   best.clearance_m = -std::numeric_limits<double>::infinity();
   while (best.guesses < max_guesses && !best.found) {
-    if (best.guesses > 0) request.initial = RandomGuess(request, generator);
+    if (best.guesses > 0) {
+      request.initial.reset();
+      request.initial = MakeDetour(request, random);
+    }
     ++best.guesses;
     const PlanResult plan = planner->Plan(request);
     const double clearance_m = TrueClearance(robot, field, plan.trajectory);

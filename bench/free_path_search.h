@@ -19,9 +19,9 @@ struct FreePath {
 /// be: the scenario's planner is run on the exact distance to the true shapes from many guesses,
 /// the direct motion and `max_guesses` - 1 random ones (a via configuration off the straight line,
 /// and the share of the time at which it is passed). What it finds is judged by the exact clearance
-/// of the collision spheres each 5 ms, until half a second after the goal; the robot rests for the
-/// scenario's latency first, as it does in an episode. It proves that a free motion exists; not
-/// finding one proves nothing.
+/// of the collision spheres, to each other too, each 5 ms, until half a second after the goal; the
+/// robot rests for the scenario's latency first, as it does in an episode. It proves that a free
+/// motion exists; not finding one proves nothing.
 /// @param scenario with its task resolved (bench/resolve.h).
 FreePath SearchFreePath(const Scenario& scenario, const RobotModel& robot, int max_guesses,
                         std::uint64_t seed);

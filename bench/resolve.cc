@@ -5,6 +5,7 @@
 
 #include "core/input_error.h"
 #include "core/shape.h"
+#include "planner/self_clearance.h"
 
 namespace sidestep {
 namespace {
@@ -48,6 +49,19 @@ class TaskChecker {
     }
   }
 
+  void CheckSelf(const std::string& key, const Eigen::VectorXd& q) const {
+    const SelfClearance links(robot_);
+    const Eigen::Matrix3Xd p_WS = robot_.ComputeSphereCenters(q, false).p_WS;
+    for (int pair = 0; pair < links.num_pairs(); ++pair) {
+      const LinkGap gap = links.Find(pair, p_WS);
+      if (gap.gap_m >= 0) continue;
+      char text[160];
+      std::snprintf(text, sizeof text, "the robot's spheres %d and %d overlap by %.1f mm",
+                    gap.first, gap.second, -1e3 * gap.gap_m);
+      Fail(key, text);
+    }
+  }
+
   void CheckClear(const std::string& key, const Eigen::VectorXd& q, const std::string& object,
                   const Shape& shape, const Pose& X_WO) const {
     const SphereCenters spheres = robot_.ComputeSphereCenters(q, false);
@@ -84,6 +98,8 @@ void ResolveTask(Scenario& scenario, const RobotModel& robot) {
   scenario.q_goal = check.LookUp("task.goal", scenario.goal_name, scenario.q_goal);
   check.CheckLimits("task.start", scenario.q_start);
   check.CheckLimits("task.goal", scenario.q_goal);
+  check.CheckSelf("task.start", scenario.q_start);
+  check.CheckSelf("task.goal", scenario.q_goal);
   for (const StaticBox& box : scenario.static_boxes) {
     check.CheckClear("task.start", scenario.q_start, box.name, Box{box.size_m}, box.X_WO);
     check.CheckClear("task.goal", scenario.q_goal, box.name, Box{box.size_m}, box.X_WO);

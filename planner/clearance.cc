@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "planner/guarded_spheres.h"
+#include "planner/self_clearance.h"
 
 namespace sidestep {
 namespace {
@@ -17,6 +18,7 @@ Clearance MeasureClearance(const RobotModel& robot, const DistanceField& field,
                            const Trajectory& trajectory, EpisodeTime start, EpisodeTime from,
                            EpisodeTime to) {
   const std::vector<int> spheres = GuardedSpheres(robot);
+  const SelfClearance links(robot);
   const double duration_s = std::max(0.0, (to - from).seconds());
   const int num_steps = static_cast<int>(std::ceil(duration_s / kSampleStep_s));
   Eigen::Matrix3Xd p_WS(3, spheres.size());
@@ -27,6 +29,7 @@ Clearance MeasureClearance(const RobotModel& robot, const DistanceField& field,
     const SphereCenters centers =
         robot.ComputeSphereCenters(Sample(trajectory, t - start).q, /*with_jacobian=*/false);
     for (std::size_t s = 0; s < spheres.size(); ++s) p_WS.col(s) = centers.p_WS.col(spheres[s]);
+    clearance.least_m = std::min(clearance.least_m, links.Least(centers.p_WS));
     field.SampleMany(p_WS, t, samples);
     clearance.samples_outside_grid += samples.num_outside;
     for (std::size_t s = 0; s < spheres.size(); ++s) {

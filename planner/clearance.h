@@ -9,11 +9,11 @@
 
 namespace sidestep {
 
-/// How close a motion comes to what a field holds: the judge of plans, because a small cost does
-/// not mean free, nor a large one collision.
+/// How close a motion comes to what a field holds, and the robot to itself: the judge of plans,
+/// because a small cost does not mean free, nor a large one collision.
 struct Clearance {
-  /// Least field distance - sphere radius [m], mount spheres left out. At most the field's clamp
-  /// less the smallest radius.
+  /// Least field distance - sphere radius [m], mount spheres left out, and least gap between links
+  /// of the robot's self_collision(). At most the field's clamp less the smallest radius.
   double least_m = std::numeric_limits<double>::infinity();
   int samples_outside_grid = 0;  ///< sphere positions outside the mapped box: not judged
 };

@@ -8,6 +8,8 @@ namespace {
 
 constexpr double kLateBegin = 0.4;  // share of the free time
 constexpr double kEarlyEnd = 0.6;
+constexpr double kDetour_rad = 0.7;
+constexpr double kLeastShare = 0.2;  // of the free time, and of the way
 
 struct Knot {
   double t_s;
@@ -45,9 +47,10 @@ Trajectory MakeFreePart(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
   throw std::invalid_argument("unknown Timing");
 }
 
-}  // namespace
-
-Trajectory MakeDirectMotion(const PlanRequest& request, Timing timing) {
+// The request's fixed states, then the motion that `make_free_part` gives from the last of them,
+// (q, v), in a given time.
+template <class MakeFreePartFn>
+Trajectory Complete(const PlanRequest& request, const MakeFreePartFn& make_free_part) {
   const int K = request.num_states, last_fixed = request.num_fixed - 1;
   Trajectory motion;
   if (request.initial) {
@@ -57,9 +60,8 @@ Trajectory MakeDirectMotion(const PlanRequest& request, Timing timing) {
     motion.q = request.q_start.replicate(1, K);
     motion.v = request.v_start.replicate(1, K);
   }
-  const Trajectory free_part =
-      MakeFreePart(motion.q.col(last_fixed), motion.v.col(last_fixed), request.q_goal,
-                   motion.t_s(K - 1) - motion.t_s(last_fixed), timing);
+  const Trajectory free_part = make_free_part(motion.q.col(last_fixed), motion.v.col(last_fixed),
+                                              motion.t_s(K - 1) - motion.t_s(last_fixed));
   for (int k = request.num_fixed; k < K; ++k) {
     const TrajectoryPoint point =
         Sample(free_part, HorizonOffset(motion.t_s(k) - motion.t_s(last_fixed)));
@@ -67,6 +69,26 @@ Trajectory MakeDirectMotion(const PlanRequest& request, Timing timing) {
     motion.v.col(k) = point.v;
   }
   return motion;
+}
+
+}  // namespace
+
+Trajectory MakeDirectMotion(const PlanRequest& request, Timing timing) {
+  return Complete(request, [&](const auto& q, const auto& v, double duration_s) {
+    return MakeFreePart(q, v, request.q_goal, duration_s, timing);
+  });
+}
+
+Trajectory MakeDetour(const PlanRequest& request, RandomStream& random) {
+  const auto share = [&random] { return kLeastShare + (1 - 2 * kLeastShare) * random.Uniform(); };
+  return Complete(request, [&](const auto& q, const auto& v, double duration_s) {
+    const Eigen::VectorXd way = request.q_goal - q, rest = Eigen::VectorXd::Zero(q.size());
+    const double via_s = share() * duration_s;
+    Eigen::VectorXd q_via = q + share() * way;
+    for (double& position : q_via) position += kDetour_rad * random.Normal();
+    return FromKnots(
+        {{0, q, v}, {via_s, q_via, way / duration_s}, {duration_s, request.q_goal, rest}});
+  });
 }
 
 Trajectory MakeWarmStart(const PlanRequest& request) {

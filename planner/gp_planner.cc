@@ -18,6 +18,9 @@ constexpr double kPositionWeight = 1000;
 constexpr double kVelocityWeight = 30;
 constexpr double kAccelerationWeight = 5;
 
+// Links keep this far apart. Spheres leave gaps of 18 mm and less (docs/robots.md).
+constexpr double kSelfEpsilon_m = 0.05;
+
 constexpr double kColdTolerance = 1e-3;  // of the first stage, whose result is only a start
 
 struct SolveOutcome {
@@ -56,6 +59,7 @@ PlanResult GpPlanner::Solve(const PlanRequest& request, const Trajectory& guess,
   options.num_interpolated = settings_.num_interpolated;
   options.qc = settings_.qc;
   options.sigma_goal = settings_.sigma_goal;
+  options.self_epsilon_m = kSelfEpsilon_m;
   LimitWeights limits;
   if (settings_.position_limits) limits.position = kPositionWeight;
   if (settings_.velocity_limits) limits.velocity = kVelocityWeight;
@@ -92,20 +96,28 @@ bool GpPlanner::IsBetter(const PlanResult& a, const PlanResult& b) const {
 }
 
 PlanResult GpPlanner::DoPlan(const PlanRequest& request) const {
-  std::vector<Timing> seeds = {Timing::kWholeTime, Timing::kLeaveLate, Timing::kArriveEarly};
+  std::vector<Timing> timings = {Timing::kWholeTime, Timing::kLeaveLate, Timing::kArriveEarly};
   PlanResult best;
   if (request.initial) {
     best = Solve(request, MakeWarmStart(request), /*warm=*/true);
   } else {
-    best = Solve(request, MakeDirectMotion(request, seeds.front()), /*warm=*/false);
-    seeds.erase(seeds.begin());
+    best = Solve(request, MakeDirectMotion(request, timings.front()), /*warm=*/false);
+    timings.erase(timings.begin());
   }
   int iterations = best.iterations;
-  for (const Timing seed : seeds) {
-    if (best.min_clearance_m > 0 && (request.initial || IsWithinLimits(best))) break;
-    PlanResult other = Solve(request, MakeDirectMotion(request, seed), /*warm=*/false);
+  const auto attempt = [&](const Trajectory& guess) {
+    PlanResult other = Solve(request, guess, /*warm=*/false);
     iterations += other.iterations;
     if (IsBetter(other, best)) best = std::move(other);
+  };
+  for (const Timing timing : timings) {
+    if (best.min_clearance_m > 0 && (request.initial || IsWithinLimits(best))) break;
+    attempt(MakeDirectMotion(request, timing));
+  }
+  const int num_detours = request.initial ? 0 : settings_.num_detours;
+  RandomStream random(0, "detours");
+  for (int i = 0; i < num_detours && best.min_clearance_m <= 0; ++i) {
+    attempt(MakeDetour(request, random));
   }
   best.iterations = iterations;
   return best;

@@ -26,6 +26,9 @@ struct GpProblemOptions {
   /// state 0 to the request's start and the others to the initial motion: the published
   /// formulation.
   std::optional<double> sigma_fixed;
+  /// Links of the robot's self_collision() nearer to each other than this are pushed apart, with
+  /// sigma_obs. The published formulation has none.
+  std::optional<double> self_epsilon_m = std::nullopt;
 };
 
 /// Weights of the limit costs [1/rad, s/rad, s^2/rad]; 0 leaves a kind out.

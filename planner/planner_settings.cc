@@ -26,6 +26,7 @@ void CheckPlannerSettings(const PlannerSettings& settings) {
   Require(IsFraction(settings.velocity_scale), "velocity_scale must be in (0, 1]");
   Require(IsFraction(settings.acceleration_scale), "acceleration_scale must be in (0, 1]");
   Require(settings.max_iterations >= 1, "max_iterations must be >= 1");
+  Require(settings.num_detours >= 0, "num_detours must be >= 0");
   Require(IsPositive(settings.function_tolerance), "function_tolerance must be > 0");
 }
 

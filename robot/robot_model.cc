@@ -86,6 +86,31 @@ std::vector<int> ReadSphereIndices(const YamlReader& map, int num_spheres) {
   return indices;
 }
 
+std::vector<LinkPair> ReadSelfCollision(const YamlReader& file,
+                                        const std::vector<CollisionSphere>& spheres) {
+  const std::string key = "self_collision";
+  std::vector<LinkPair> pairs;
+  for (const YamlReader& entry : file.GetMaps(key)) {
+    const Eigen::VectorXd links = entry.GetVector("links", 2);
+    for (const double link : links) {
+      const auto is_there = [link](const CollisionSphere& s) { return s.link == link; };
+      if (std::none_of(spheres.begin(), spheres.end(), is_there)) {
+        entry.Fail("links", "must be two links with spheres");
+      }
+    }
+    const LinkPair pair{static_cast<int>(links(0)), static_cast<int>(links(1))};
+    if (pair.first >= pair.second) entry.Fail("links", "must name the lower link first");
+    for (const LinkPair& other : pairs) {
+      if (other.first == pair.first && other.second == pair.second) {
+        entry.Fail("links", "are named twice");
+      }
+    }
+    entry.CheckNoUnknownKeys();
+    pairs.push_back(pair);
+  }
+  return pairs;
+}
+
 Eigen::VectorXd ReadGains(const YamlReader& map, const std::string& key, int num_joints) {
   const Eigen::VectorXd gains = map.GetVector(key, num_joints);
   if (!(gains.minCoeff() > 0)) map.Fail(key, "must all be > 0");
@@ -175,6 +200,10 @@ RobotModel RobotModel::FromFile(const std::string& path, const Pose& X_WB) {
   model.mount_spheres_ = ReadSphereIndices(mount, model.num_spheres());
   model.mount_links_ = mount.GetStrings("links");
   mount.CheckNoUnknownKeys();
+
+  if (file.Has("self_collision")) {
+    model.self_collision_ = ReadSelfCollision(file, model.spheres_);
+  }
 
   const YamlReader control = file.GetMap("control");
   model.stiffness_ = ReadGains(control, "stiffness_n_m_rad", n);

@@ -31,6 +31,11 @@ struct CollisionSphere {
   double radius_m = 0;
 };
 
+/// Two links (0-based DH rows, first < second) that could touch each other.
+struct LinkPair {
+  int first = 0, second = 0;
+};
+
 /// Where the spheres are for one q. S spheres, n joints.
 struct SphereCenters {
   Eigen::Matrix3Xd p_WS;  ///< [m] 3 x S
@@ -72,6 +77,9 @@ class RobotModel {
   const std::vector<int>& mount_spheres() const { return mount_spheres_; }
   /// Links (names of MJCF bodies) that may touch what the robot is mounted on.
   const std::vector<std::string>& mount_links() const { return mount_links_; }
+  /// Pairs of links that planners keep apart; each link has spheres. Empty if robot.yaml names
+  /// none.
+  const std::vector<LinkPair>& self_collision() const { return self_collision_; }
   /// Joint impedance gains of the simulated controller, shape n: N m/rad and N m s/rad.
   const Eigen::VectorXd& stiffness() const { return stiffness_; }
   const Eigen::VectorXd& damping() const { return damping_; }
@@ -101,6 +109,7 @@ class RobotModel {
   std::map<std::string, Eigen::VectorXd> configurations_;
   std::vector<int> mount_spheres_;
   std::vector<std::string> mount_links_;
+  std::vector<LinkPair> self_collision_;
   Eigen::VectorXd stiffness_, damping_;
 };
 

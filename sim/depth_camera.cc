@@ -56,9 +56,9 @@ std::optional<Scan> DepthCamera::Read() {
     const double depth_m = hit ? hit->distance_m / ray_C.norm() : settings_.range_m;
     if (!hit || depth_m >= settings_.range_m) {
       free_ends.push_back(ray_C * settings_.range_m);
-    } else if (caster_.IsFloor(hit->geom)) {
+    } else if (caster_.IsFloor(hit->geom) || caster_.IsRobot(hit->geom)) {
       free_ends.push_back(ray_C * depth_m);
-    } else if (!caster_.IsRobot(hit->geom)) {
+    } else {
       hits.push_back(ray_C * (depth_m + settings_.noise_per_m * depth_m * depth_m * noise));
     }
   }

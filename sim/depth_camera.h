@@ -18,9 +18,9 @@ namespace sidestep {
 ///
 /// A scan (of ScanKind::kSurface) holds a point for each pixel that sees a thing other than robot
 /// and floor, at its depth z with noise of standard deviation noise_per_m z^2, along the pixel's
-/// ray. Pixels that see the floor, or nothing within range_m of depth, say that their ray is free
-/// so far. Pixels that see the robot are left out, as by a filter that knows where the robot is; so
-/// are those that drop out.
+/// ray. Pixels that see the floor, the robot, or nothing within range_m of depth say that their ray
+/// is free so far, as after a filter that knows where the robot is. Pixels that drop out say
+/// nothing.
 class DepthCamera final : public Sensor {
  public:
   /// @param world must outlive this.

@@ -19,7 +19,7 @@ InterpolatedObstacleCost::InterpolatedObstacleCost(ObstacleHinge& hinge,
                                                    const GpInterpolation& interpolation,
                                                    EpisodeTime t)
     : hinge_(hinge), lambda_(interpolation.Lambda.row(0)), psi_(interpolation.Psi.row(0)), t_(t) {
-  set_num_residuals(hinge.num_spheres());
+  set_num_residuals(hinge.num_hinges());
   *mutable_parameter_block_sizes() = {2 * hinge.num_joints(), 2 * hinge.num_joints()};
 }
 

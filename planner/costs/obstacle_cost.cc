@@ -3,7 +3,7 @@
 namespace sidestep {
 
 ObstacleCost::ObstacleCost(ObstacleHinge& hinge, EpisodeTime t) : hinge_(hinge), t_(t) {
-  set_num_residuals(hinge.num_spheres());
+  set_num_residuals(hinge.num_hinges());
   *mutable_parameter_block_sizes() = {2 * hinge.num_joints()};
 }
 

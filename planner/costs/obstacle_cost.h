@@ -11,7 +11,7 @@ namespace sidestep {
 
 /// Keeps the robot's spheres away from obstacles at one support state: the hinges of
 /// obstacle_hinge.h at q and the state's time.
-/// Parameters: one block, the state (q, v), shape 2n. Residuals: one a sphere. Jacobian: analytic.
+/// Parameters: one block, the state (q, v), shape 2n. Residuals: the hinges. Jacobian: analytic.
 class ObstacleCost final : public ceres::CostFunction {
  public:
   /// `hinge` is borrowed; costs that are evaluated in turn may share it.

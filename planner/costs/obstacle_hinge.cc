@@ -1,33 +1,60 @@
 #include "planner/costs/obstacle_hinge.h"
 
+#include <algorithm>
+
 #include "planner/guarded_spheres.h"
 
 namespace sidestep {
 
 ObstacleHinge::ObstacleHinge(const RobotModel& robot, const DistanceField& field, double epsilon_m,
-                             double sigma)
-    : robot_(robot), field_(field), sigma_(sigma), spheres_(GuardedSpheres(robot)) {
-  reach_m_.resize(num_spheres());
-  for (int s = 0; s < num_spheres(); ++s) {
+                             double sigma, std::optional<double> self_epsilon_m)
+    : robot_(robot),
+      field_(field),
+      sigma_(sigma),
+      spheres_(GuardedSpheres(robot)),
+      links_(robot),
+      self_epsilon_m_(self_epsilon_m) {
+  const auto S = static_cast<Eigen::Index>(spheres_.size());
+  reach_m_.resize(S);
+  for (Eigen::Index s = 0; s < S; ++s) {
     reach_m_(s) = epsilon_m + robot.sphere_radii_m()(spheres_[s]);
   }
-  p_WS_.resize(3, num_spheres());
-  hinges_.resize(num_spheres());
-  jacobian_.resize(num_spheres(), num_joints());
+  p_WS_.resize(3, S);
+  hinges_.resize(S + (self_epsilon_m ? links_.num_pairs() : 0));
+  jacobian_.resize(hinges_.size(), num_joints());
 }
 
 void ObstacleHinge::Evaluate(const Eigen::VectorXd& q, EpisodeTime t, bool with_jacobian) {
+  const Eigen::Index S = p_WS_.cols();
   const SphereCenters centers = robot_.ComputeSphereCenters(q, with_jacobian);
-  for (int s = 0; s < num_spheres(); ++s) p_WS_.col(s) = centers.p_WS.col(spheres_[s]);
+  for (Eigen::Index s = 0; s < S; ++s) p_WS_.col(s) = centers.p_WS.col(spheres_[s]);
   field_.SampleMany(p_WS_, t, samples_);
-  hinges_ = (reach_m_ - samples_.distance_m).cwiseMax(0) / sigma_;
+  hinges_.head(S) = (reach_m_ - samples_.distance_m).cwiseMax(0) / sigma_;
+  if (self_epsilon_m_) EvaluateLinks(centers, with_jacobian);
   if (!with_jacobian) return;
-  for (int s = 0; s < num_spheres(); ++s) {
+  for (Eigen::Index s = 0; s < S; ++s) {
     if (hinges_(s) > 0) {
       jacobian_.row(s).noalias() = (samples_.gradient_W.col(s).transpose() / -sigma_) *
                                    centers.Jq.middleRows<3>(3 * spheres_[s]);
     } else {
       jacobian_.row(s).setZero();
+    }
+  }
+}
+
+void ObstacleHinge::EvaluateLinks(const SphereCenters& centers, bool with_jacobian) {
+  for (int pair = 0; pair < links_.num_pairs(); ++pair) {
+    const Eigen::Index h = p_WS_.cols() + pair;
+    const LinkGap gap = links_.Find(pair, centers.p_WS);
+    hinges_(h) = std::max(0.0, *self_epsilon_m_ - gap.gap_m) / sigma_;
+    if (!with_jacobian) continue;
+    const Eigen::Vector3d apart_W = centers.p_WS.col(gap.second) - centers.p_WS.col(gap.first);
+    if (hinges_(h) > 0 && apart_W.norm() > 0) {
+      jacobian_.row(h).noalias() =
+          (apart_W.normalized().transpose() / -sigma_) *
+          (centers.Jq.middleRows<3>(3 * gap.second) - centers.Jq.middleRows<3>(3 * gap.first));
+    } else {
+      jacobian_.row(h).setZero();
     }
   }
 }

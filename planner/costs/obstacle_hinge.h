@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "core/time.h"
 #include "planner/costs/state_jacobian.h"
+#include "planner/self_clearance.h"
 #include "robot/robot_model.h"
 #include "sdf/distance_field.h"
 
@@ -16,30 +18,38 @@ namespace sidestep {
 /// spheres of the robot are left out: they overlap what it stands on and nothing pushes them out.
 /// Outside the field's grid the answer is its clamp value: idle, if the field is clamped at no less
 /// than epsilon + r_s.
-/// Source: Mukadam et al., IJRR 37(11):1319-1340, 2018, section 5.2.
+///
+/// The robot's own links may be obstacles too: with g_l the gap between the links of pair l (see
+/// self_clearance.h), a further h_l = max(0, self_epsilon - g_l) / sigma. Where two pairs of
+/// spheres are equally near, its gradient is that of one of them. Source: Mukadam et al., IJRR
+/// 37(11):1319-1340, 2018, section 5.2.
 ///
 /// Holds the buffers of the latest evaluation: one thread at a time.
 class ObstacleHinge {
  public:
-  /// `robot` and `field` are borrowed.
-  ObstacleHinge(const RobotModel& robot, const DistanceField& field, double epsilon_m,
-                double sigma);
+  /// `robot` and `field` are borrowed. Without `self_epsilon_m` links do not see each other.
+  ObstacleHinge(const RobotModel& robot, const DistanceField& field, double epsilon_m, double sigma,
+                std::optional<double> self_epsilon_m = std::nullopt);
 
   int num_joints() const { return robot_.num_joints(); }
-  /// S: those with a hinge, all but mount spheres.
-  int num_spheres() const { return static_cast<int>(spheres_.size()); }
+  /// H: of each sphere but mount spheres, then of each pair of links.
+  int num_hinges() const { return static_cast<int>(hinges_.size()); }
 
   /// Fills hinges() for q of shape n and, if asked, jacobian().
   void Evaluate(const Eigen::VectorXd& q, EpisodeTime t, bool with_jacobian);
-  const Eigen::VectorXd& hinges() const { return hinges_; }     ///< shape S
-  const RowMajorMatrix& jacobian() const { return jacobian_; }  ///< S x n, d h / d q
+  const Eigen::VectorXd& hinges() const { return hinges_; }     ///< shape H
+  const RowMajorMatrix& jacobian() const { return jacobian_; }  ///< H x n, d h / d q
 
  private:
+  void EvaluateLinks(const SphereCenters& centers, bool with_jacobian);
+
   const RobotModel& robot_;
   const DistanceField& field_;
   double sigma_;
-  std::vector<int> spheres_;  // indices in the robot, of the S spheres
+  std::vector<int> spheres_;  // indices in the robot, of those with a hinge
   Eigen::VectorXd reach_m_;   // epsilon + r_s
+  SelfClearance links_;
+  std::optional<double> self_epsilon_m_;
   Eigen::Matrix3Xd p_WS_;
   DistanceSamples samples_;
   Eigen::VectorXd hinges_;

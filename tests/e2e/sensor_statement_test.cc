@@ -209,6 +209,26 @@ TEST(DepthCamera, HasTheNoiseThatItSaysAtItsDepth) {
   ExpectNormalCounts(counts, scenario.grid.cell_m, 0, 0.01 * 2 * 2);
 }
 
+TEST(DepthCamera, FindsTheSpaceBeforeTheRobotFreeAgainWhereSomethingHasPassed) {
+  Scenario scenario = SwingingScenario();
+  scenario.moving_obstacles = {Passing("cart", Sphere{0.15}, {-0.7, -0.8, 0.3}, {1, 0, 0}, 0.5)};
+  scenario.sensor.name = "depth_camera";
+  CameraSettings camera;  // looks at the arm's side; the ball goes by before it
+  camera.position_m = {0.4, -2.5, 0.3};
+  camera.look_at_m = {0.4, 0, 0.3};
+  camera.range_m = 4;
+  camera.unseen = "remembered";
+  scenario.sensor.camera = camera;
+  const Recording recording = Record(scenario);
+  int most = 0, left = 0;
+  for (const std::vector<std::uint8_t>& cells : GridsOf(recording, scenario.grid)) {
+    left = static_cast<int>(std::count(cells.begin(), cells.end(), 1));
+    most = std::max(most, left);
+  }
+  EXPECT_GT(most, 20);
+  EXPECT_EQ(left, 0);
+}
+
 TEST(TagCamera, HasTheErrorsThatItsCovarianceSays) {
   Scenario scenario = SwingingScenario();
   scenario.moving_obstacles = {

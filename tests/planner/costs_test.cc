@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <ostream>
@@ -70,6 +71,14 @@ std::unique_ptr<ceres::CostFunction> MidVelocity(World&) {
                                                 Eigen::Vector2d(100, 50));
 }
 
+// Costs of an arm folded so far that its links are within the margin of each other.
+struct FoldedWorld {
+  RobotModel arm =
+      RobotModel::FromFile(SIDESTEP_SOURCE_DIR "/tests/support/folding_arm.yaml", Pose());
+  BallField field{{100, 0, 0}, {0, 0, 0}, 0.1};
+  ObstacleHinge hinge{arm, field, /*epsilon_m=*/0.2, /*sigma=*/0.05, /*self_epsilon_m=*/0.1};
+};
+
 std::vector<Case> Cases() {
   using Eigen::Vector4d;
   return {
@@ -131,7 +140,7 @@ TEST(ObstacleHinge, IsTheMarginThatIsMissingInUnitsOfSigma) {
   const EpisodeTime t(0.1);
   world.hinge.Evaluate(q, t, false);
   const SphereCenters centers = world.arm.ComputeSphereCenters(q, false);
-  ASSERT_EQ(world.hinge.num_spheres(), 5) << "sphere 0 is mounted";
+  ASSERT_EQ(world.hinge.num_hinges(), 5) << "sphere 0 is mounted";
   int active = 0;
   for (int s = 0; s < 5; ++s) {
     const double distance_m = (centers.p_WS.col(s + 1) - world.field.CenterAt(t)).norm() - 0.1;
@@ -141,6 +150,30 @@ TEST(ObstacleHinge, IsTheMarginThatIsMissingInUnitsOfSigma) {
   }
   EXPECT_GT(active, 0);
   EXPECT_LT(active, 5) << "one must be idle";
+}
+
+TEST(ObstacleHinge, PushesLinksApartThatComeNearEachOther) {
+  FoldedWorld world;
+  const Eigen::Vector2d q(0.2, 2.85);
+  const auto hinge_at = [&world](const Eigen::Vector2d& at) {
+    world.hinge.Evaluate(at, EpisodeTime(0), /*with_jacobian=*/true);
+    return world.hinge.hinges()(2);
+  };
+  const double step = 1e-6;
+  const double slope =
+      (hinge_at(q + Eigen::Vector2d(0, step)) - hinge_at(q - Eigen::Vector2d(0, step))) /
+      (2 * step);
+  const double distance_m = std::sqrt(0.25 + 0.16 - 2 * 0.5 * 0.4 * std::cos(M_PI - q(1)));
+  EXPECT_NEAR(hinge_at(q), (0.1 - (distance_m - 0.13)) / 0.05, 1e-12);
+  ASSERT_EQ(world.hinge.num_hinges(), 3) << "two spheres and a pair of links";
+  EXPECT_GT(slope, 1) << "folding further costs more";
+  EXPECT_NEAR(world.hinge.jacobian()(2, 1), slope, 1e-6 * slope);
+  EXPECT_NEAR(world.hinge.jacobian()(2, 0), 0, 1e-12) << "the shoulder moves both";
+}
+
+TEST(ObstacleHinge, HasNoneForLinksWithoutAMargin) {
+  FoldedWorld world;
+  EXPECT_EQ(ObstacleHinge(world.arm, world.field, 0.2, 0.05).num_hinges(), 2);
 }
 
 TEST(ObstacleHinge, LeavesMountSpheresOut) {

@@ -123,6 +123,7 @@ TEST_P(EveryPlanner, RefusesSettingsOutOfRange) {
       [](PlannerSettings& s) { s.velocity_scale = 1.1; },
       [](PlannerSettings& s) { s.acceleration_scale = 0; },
       [](PlannerSettings& s) { s.max_iterations = 0; },
+      [](PlannerSettings& s) { s.num_detours = -1; },
       [](PlannerSettings& s) { s.function_tolerance = -1; },
   };
   for (std::size_t i = 0; i < spoil.size(); ++i) {

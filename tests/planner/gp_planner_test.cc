@@ -70,6 +70,18 @@ TEST_F(GpPlannerTest, BendsAroundABallThatTheDirectMotionHits) {
   EXPECT_LE(result.limit_use.acceleration, 1);
 }
 
+TEST_F(GpPlannerTest, TakesADetourWhereNoTimingHelps) {
+  // The ball stands where the forearm would sweep; the elbow must fold first.
+  const BallField ball({0.8, 0, 0}, {0, 0, 0}, 0.05);
+  PlannerSettings settings;
+  settings.num_detours = 0;
+  EXPECT_EQ(GpPlanner(arm_, settings).Plan(Request(ball)).status, PlanStatus::kInCollision);
+  settings.num_detours = 8;
+  const PlanResult result = GpPlanner(arm_, settings).Plan(Request(ball));
+  EXPECT_EQ(result.status, PlanStatus::kSolved);
+  EXPECT_GT(result.min_clearance_m, 0.1);
+}
+
 TEST_F(GpPlannerTest, MeetsAMovingBallNeitherWhereItWasNorWhereItWillBe) {
   // The ball goes before the arm along the arm's own circle, so that the direct motion is free
   // though it passes every place where the ball ever was.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "planner/clearance.h"
@@ -65,6 +66,36 @@ TEST(DirectMotion, HasGoneHalfWayAtDifferentTimes) {
   EXPECT_NEAR(MakeDirectMotion(Request(), Timing::kLeaveLate).q(0, 21), 0, 1e-12);
   EXPECT_NEAR(MakeDirectMotion(Request(), Timing::kArriveEarly).q(0, 9), 0, 1e-12);
   EXPECT_NEAR(half_way(Timing::kLeaveLate), 0, 1e-12);
+}
+
+TEST(Detour, LeadsFromTheFixedStatesToTheGoalOffTheDirectLine) {
+  PlanRequest request = Request();
+  request.initial = MakeDirectMotion(request, Timing::kWholeTime);
+  request.num_fixed = 6;
+  RandomStream random(1, "test");
+  const Eigen::Vector2d way = request.q_goal - request.q_start;
+  double furthest_rad = 0;
+  for (int i = 0; i < 20; ++i) {
+    const Trajectory motion = MakeDetour(request, random);
+    EXPECT_EQ(motion.q.leftCols(6), request.initial->q.leftCols(6));
+    EXPECT_EQ(motion.v.leftCols(6), request.initial->v.leftCols(6));
+    EXPECT_EQ(motion.q.col(30), request.q_goal);
+    EXPECT_EQ(motion.v.col(30), Eigen::Vector2d::Zero());
+    for (int k = 0; k < 31; ++k) {
+      const Eigen::Vector2d moved = motion.q.col(k) - request.q_start;
+      const double off_rad = std::abs(moved(0) * way(1) - moved(1) * way(0)) / way.norm();
+      furthest_rad = std::max(furthest_rad, off_rad);
+    }
+  }
+  EXPECT_GT(furthest_rad, 0.7);
+  EXPECT_LT(furthest_rad, 4);
+}
+
+TEST(Detour, IsDecidedByItsStreamAlone) {
+  RandomStream one(1, "test"), same(1, "test"), other(2, "test");
+  const Trajectory motion = MakeDetour(Request(), one);
+  EXPECT_EQ(motion.q, MakeDetour(Request(), same).q);
+  EXPECT_NE(motion.q, MakeDetour(Request(), other).q);
 }
 
 TEST(Clearance, IsThatOfTheNearestSphereAtTheNearestTime) {
