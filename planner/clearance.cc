@@ -14,6 +14,15 @@ constexpr double kSampleStep_s = 0.02;
 
 }  // namespace
 
+bool IsSafer(const Clearance& a, const Clearance& b) {
+  if (a.first_contact.has_value() != b.first_contact.has_value()) return !a.first_contact;
+  if (a.first_contact) {
+    const double later_s = (*a.first_contact - *b.first_contact).seconds();
+    if (std::abs(later_s) > kSampleStep_s) return later_s > 0;
+  }
+  return a.least_m > b.least_m;
+}
+
 Clearance MeasureClearance(const RobotModel& robot, const DistanceField& field,
                            const Trajectory& trajectory, EpisodeTime start, EpisodeTime from,
                            EpisodeTime to) {
@@ -36,6 +45,7 @@ Clearance MeasureClearance(const RobotModel& robot, const DistanceField& field,
       clearance.least_m =
           std::min(clearance.least_m, samples.distance_m(s) - robot.sphere_radii_m()(spheres[s]));
     }
+    if (clearance.least_m <= 0 && !clearance.first_contact) clearance.first_contact = t;
   }
   return clearance;
 }

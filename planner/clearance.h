@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 
 #include "core/time.h"
 #include "core/trajectory.h"
@@ -15,8 +16,14 @@ struct Clearance {
   /// Least field distance - sphere radius [m], mount spheres left out, and least gap between links
   /// of the robot's self_collision(). At most the field's clamp less the smallest radius.
   double least_m = std::numeric_limits<double>::infinity();
+  std::optional<EpisodeTime> first_contact;  ///< the first sample at which something touches
   int samples_outside_grid = 0;  ///< sphere positions outside the mapped box: not judged
 };
+
+/// Free before not free. Of two that are free, the one that keeps more distance; of two that are
+/// not, the one that is free for longer by more than a sampling step, since until then a way out
+/// may be found, else the one that keeps more distance.
+bool IsSafer(const Clearance& a, const Clearance& b);
 
 /// Samples the motion along `trajectory`, which began at `start`, every 0.02 s from `from` to `to`,
 /// and at `to`. Before its first and after its last state it rests.

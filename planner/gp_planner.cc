@@ -2,6 +2,8 @@
 
 #include <ceres/solver.h>
 
+#include <bit>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -43,6 +45,10 @@ SolveOutcome SolveByLevenbergMarquardt(ceres::Problem& problem, int max_iteratio
   ceres::Solve(options, &problem, &summary);
   return {static_cast<int>(summary.iterations.size()) - 1,
           summary.termination_type == ceres::CONVERGENCE};
+}
+
+EpisodeTime FirstFreeTime(const PlanRequest& request) {
+  return request.start + HorizonOffset(request.num_fixed * request.step_s);
 }
 
 }  // namespace
@@ -89,10 +95,10 @@ bool GpPlanner::IsWithinLimits(const PlanResult& plan) const {
 
 bool GpPlanner::IsBetter(const PlanResult& a, const PlanResult& b) const {
   const auto rank = [this](const PlanResult& plan) {
-    return plan.min_clearance_m <= 0 ? 0 : IsWithinLimits(plan) ? 2 : 1;
+    return plan.clearance.first_contact ? 0 : IsWithinLimits(plan) ? 2 : 1;
   };
   if (rank(a) != rank(b)) return rank(a) > rank(b);
-  return a.min_clearance_m > b.min_clearance_m;
+  return IsSafer(a.clearance, b.clearance);
 }
 
 PlanResult GpPlanner::DoPlan(const PlanRequest& request) const {
@@ -111,12 +117,12 @@ PlanResult GpPlanner::DoPlan(const PlanRequest& request) const {
     if (IsBetter(other, best)) best = std::move(other);
   };
   for (const Timing timing : timings) {
-    if (best.min_clearance_m > 0 && (request.initial || IsWithinLimits(best))) break;
+    if (!best.clearance.first_contact && (request.initial || IsWithinLimits(best))) break;
     attempt(MakeDirectMotion(request, timing));
   }
-  const int num_detours = request.initial ? 0 : settings_.num_detours;
-  RandomStream random(0, "detours");
-  for (int i = 0; i < num_detours && best.min_clearance_m <= 0; ++i) {
+  // Other ones a cycle later: who waits without a way out tries more and more of them.
+  RandomStream random(std::bit_cast<std::uint64_t>(FirstFreeTime(request).seconds()), "detours");
+  for (int i = 0; i < settings_.num_detours && best.clearance.first_contact; ++i) {
     attempt(MakeDetour(request, random));
   }
   best.iterations = iterations;

@@ -15,8 +15,8 @@ namespace sidestep {
 /// solved with limits at once. A plan is judged by its clearance, not by its cost. If a cold one is
 /// not free within the limits, or a warm one not free, direct motions with other timings are tried
 /// as seeds until one is, and the best counts. Where all of them touch something, detours over
-/// random configurations follow, the same ones each time. Links that the robot's self_collision()
-/// names are kept 0.05 m apart.
+/// random configurations follow, other ones for another time. Links that the robot's
+/// self_collision() names are kept 0.05 m apart.
 ///
 /// Source: Mukadam et al., "Continuous-time Gaussian process motion planning via probabilistic
 /// inference", IJRR 37(11):1319-1340, 2018.
@@ -29,7 +29,7 @@ class GpPlanner final : public Planner {
   PlanResult DoPlan(const PlanRequest& request) const override;
   PlanResult Solve(const PlanRequest& request, const Trajectory& guess, bool warm) const;
   bool IsWithinLimits(const PlanResult& plan) const;  // those that count by the settings
-  /// Free within limits comes before free, free before not free; then the wider clearance.
+  /// Free within limits comes before free, free before not free; then what is safer.
   bool IsBetter(const PlanResult& a, const PlanResult& b) const;
 
   PlannerSettings settings_;

@@ -72,15 +72,12 @@ PlanResult Planner::Plan(const PlanRequest& request) const {
 PlanResult Planner::MakeResult(const PlanRequest& request, const Trajectory& trajectory,
                                bool converged) const {
   const auto at = [&](int k) { return request.start + HorizonOffset(trajectory.t_s(k)); };
-  const Clearance clearance =
-      MeasureClearance(robot_, *request.field, trajectory, request.start, at(request.num_fixed - 1),
-                       at(request.num_states - 1));
   PlanResult result;
   result.trajectory = trajectory;
-  result.min_clearance_m = clearance.least_m;
-  result.samples_outside_grid = clearance.samples_outside_grid;
+  result.clearance = MeasureClearance(robot_, *request.field, trajectory, request.start,
+                                      at(request.num_fixed - 1), at(request.num_states - 1));
   result.limit_use = MeasureLimitUse(robot_, trajectory, request.num_fixed - 1);
-  if (clearance.least_m <= 0) {
+  if (result.clearance.first_contact) {
     result.status = PlanStatus::kInCollision;
   } else {
     result.status = converged ? PlanStatus::kSolved : PlanStatus::kNotConverged;

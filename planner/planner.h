@@ -6,6 +6,7 @@
 
 #include "core/time.h"
 #include "core/trajectory.h"
+#include "planner/clearance.h"
 #include "planner/limit_use.h"
 #include "robot/robot_model.h"
 #include "sdf/distance_field.h"
@@ -49,9 +50,8 @@ struct PlanResult {
   int iterations = 0;     ///< of all solves together
   /// Each part half the sum of squared residuals; what only fixed states decide is left out.
   PlanCost cost;
-  double min_clearance_m = 0;    ///< least distance - radius along the free part, in the field
-  int samples_outside_grid = 0;  ///< sphere positions of that check outside the mapped box
-  LimitUse limit_use;            ///< of the free part
+  Clearance clearance;  ///< of the free part, in the field
+  LimitUse limit_use;   ///< of the free part
 };
 
 /// Request in, result out; no hidden state: equal requests give equal bits.

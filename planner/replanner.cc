@@ -67,47 +67,46 @@ Replanner::Cycle Replanner::Run(EpisodeTime now, const JointState& state, Horizo
   EpisodeTime t_effect = now + latency;
   if (running_) t_effect = std::max(t_effect, running_->start);
   const TimedPlan present = WithoutNewPlan(now, state);
-  const auto clearance_m = [&](const TimedPlan& plan, EpisodeTime to) {
-    return MeasureClearance(planner_.robot(), *field, plan.trajectory, plan.start, t_effect, to)
-        .least_m;
+  const auto measure = [&](const TimedPlan& plan, EpisodeTime to) {
+    return MeasureClearance(planner_.robot(), *field, plan.trajectory, plan.start, t_effect, to);
   };
 
   CycleRecord& record = cycle.record;
   TimedPlan shown = present;
+  Clearance clearance;  // of what is shown
   if (const auto request = MakeRequest(now, state, t_effect, *field)) {
     const auto show = [&](PlanResult result, EpisodeTime start) {
       record.status = ToString(result.status);
       record.iterations += result.iterations;
       record.cost = result.cost.total();
-      record.predicted_clearance_m = result.min_clearance_m;
+      clearance = result.clearance;
       shown = {std::move(result.trajectory), start};
     };
     show(planner_.Plan(*request), request->start);
-    if (record.predicted_clearance_m <= 0 && running_) {
+    if (clearance.first_contact && running_) {
       TrajectoryPoint there = {request->q_start, request->v_start, {}};
       if (request->start < t_effect) {
         there = Sample(present.trajectory, t_effect - present.start);
         PlanResult result = planner_.Plan(NewHorizon(t_effect, there.q, there.v, *field));
-        if (result.min_clearance_m > record.predicted_clearance_m) {
-          show(std::move(result), t_effect);
-        }
+        if (IsSafer(result.clearance, clearance)) show(std::move(result), t_effect);
       }
       TimedPlan brake = Brake(t_effect, there);
-      const double brake_m = clearance_m(brake, EndOf(brake));
-      if (record.predicted_clearance_m <= 0 && brake_m > record.predicted_clearance_m &&
-          clearance_m(present, EndOf(brake)) <= 0) {
+      const Clearance braking = measure(brake, EndOf(brake));
+      if (clearance.first_contact && IsSafer(braking, clearance) &&
+          measure(present, EndOf(brake)).first_contact) {
         record.status = "braked";
-        record.predicted_clearance_m = brake_m;
+        clearance = braking;
         shown = std::move(brake);
       }
     }
-    record.accepted = IsFinite(shown.trajectory) &&
-                      (record.predicted_clearance_m > 0 ||
-                       record.predicted_clearance_m > clearance_m(present, EndOf(shown)));
+    record.accepted =
+        IsFinite(shown.trajectory) &&
+        (!clearance.first_contact || IsSafer(clearance, measure(present, EndOf(shown))));
   } else {
     record.status = "kept";
-    record.predicted_clearance_m = clearance_m(present, EndOf(present));
+    clearance = measure(present, EndOf(present));
   }
+  record.predicted_clearance_m = clearance.least_m;
   if (record.accepted) running_ = cycle.plan = shown;
   cycle.optimise_s = ThreadCpuSeconds() - predicted_s;
 
@@ -149,8 +148,8 @@ std::optional<PlanRequest> Replanner::MakeRequest(EpisodeTime now, const JointSt
   const EpisodeTime judged_to =
       at_rest ? t_effect + HorizonOffset(options_.horizon_s) : EndOf(*running_);
   const bool is_free =
-      MeasureClearance(planner_.robot(), field, running, running_->start, t_effect, judged_to)
-          .least_m > 0;
+      !MeasureClearance(planner_.robot(), field, running, running_->start, t_effect, judged_to)
+           .first_contact;
   const double goal_error_rad =
       (running.q.col(num_states_ - 1) - options_.q_goal).cwiseAbs().maxCoeff();
   if (is_free && goal_error_rad <= kGoalTolerance_rad) return std::nullopt;

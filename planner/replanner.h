@@ -41,8 +41,8 @@ struct TimedPlan {
 ///
 /// A plan is taken if it is predicted to be free. If it is not, two ways out are weighed as well: a
 /// new horizon to the goal, which may have more time and begins with another guess; and to brake at
-/// the robot's acceleration limits and wait. Then the one that keeps the most distance is taken,
-/// and none if going on with what runs keeps as much.
+/// the robot's acceleration limits and wait. Then the safest is taken (see clearance.h), and none
+/// if going on with what runs is as safe.
 class Replanner {
  public:
   /// `planner` and `world` are borrowed. @throws std::invalid_argument for options out of range.

@@ -74,7 +74,7 @@ void BM_ColdPlan(benchmark::State& state) {
   for (auto _ : state) {
     const PlanResult result = planner->Plan(request);
     iterations = result.iterations;
-    benchmark::DoNotOptimize(result.min_clearance_m);
+    benchmark::DoNotOptimize(result.clearance.least_m);
   }
   state.counters["iterations"] = iterations;
 }
@@ -98,7 +98,7 @@ void BM_WarmPlan(benchmark::State& state) {
   for (auto _ : state) {
     const PlanResult result = planner->Plan(request);
     iterations = result.iterations;
-    benchmark::DoNotOptimize(result.min_clearance_m);
+    benchmark::DoNotOptimize(result.clearance.least_m);
   }
   state.counters["iterations"] = iterations;
 }

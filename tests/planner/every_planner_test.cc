@@ -59,7 +59,7 @@ TEST_P(EveryPlanner, AnswersOnTheRequestsGridWithFiniteNumbers) {
   ASSERT_EQ(result.trajectory.num_states(), 21);
   for (int k = 0; k < 21; ++k) EXPECT_NEAR(result.trajectory.t_s(k), 0.1 * k, 1e-12);
   EXPECT_TRUE(std::isfinite(result.cost.total()));
-  EXPECT_TRUE(std::isfinite(result.min_clearance_m));
+  EXPECT_TRUE(std::isfinite(result.clearance.least_m));
 }
 
 TEST_P(EveryPlanner, StartsWhereItIsToldToTheBitAndEndsAtTheGoalAtRest) {
@@ -97,7 +97,7 @@ TEST_P(EveryPlanner, RepeatsItselfBitForBit) {
     EXPECT_EQ(first.trajectory.v, second.trajectory.v);
     EXPECT_EQ(first.iterations, second.iterations);
     EXPECT_EQ(first.cost.total(), second.cost.total());
-    EXPECT_EQ(first.min_clearance_m, second.min_clearance_m);
+    EXPECT_EQ(first.clearance.least_m, second.clearance.least_m);
   }
 }
 
@@ -110,7 +110,7 @@ TEST_P(EveryPlanner, SaysSoWhenThePlanCollides) {
   request.field = &at_goal;
   const PlanResult result = Plan(request);
   EXPECT_EQ(result.status, PlanStatus::kInCollision);
-  EXPECT_LT(result.min_clearance_m, 0);
+  EXPECT_LT(result.clearance.least_m, 0);
 }
 
 TEST_P(EveryPlanner, RefusesSettingsOutOfRange) {

@@ -65,7 +65,7 @@ TEST_F(GpPlannerTest, BendsAroundABallThatTheDirectMotionHits) {
       -0.02);
   const PlanResult result = GpPlanner(arm_, {}).Plan(request);
   EXPECT_EQ(result.status, PlanStatus::kSolved);
-  EXPECT_GT(result.min_clearance_m, 0.02);
+  EXPECT_GT(result.clearance.least_m, 0.02);
   EXPECT_LE(result.limit_use.velocity, 1);
   EXPECT_LE(result.limit_use.acceleration, 1);
 }
@@ -79,7 +79,7 @@ TEST_F(GpPlannerTest, TakesADetourWhereNoTimingHelps) {
   settings.num_detours = 8;
   const PlanResult result = GpPlanner(arm_, settings).Plan(Request(ball));
   EXPECT_EQ(result.status, PlanStatus::kSolved);
-  EXPECT_GT(result.min_clearance_m, 0.1);
+  EXPECT_GT(result.clearance.least_m, 0.1);
 }
 
 TEST_F(GpPlannerTest, MeetsAMovingBallNeitherWhereItWasNorWhereItWillBe) {

@@ -86,7 +86,7 @@ TEST_F(FoldingArm, BrakesBeforeItTouchesItself) {
       MeasureClearance(arm_, nothing_, direct, start, start, start + HorizonOffset(3)).least_m, 0);
   const PlanResult result = GpPlanner(arm_, {}).Plan(request);
   EXPECT_EQ(result.status, PlanStatus::kSolved);
-  EXPECT_GT(result.min_clearance_m, 0);
+  EXPECT_GT(result.clearance.least_m, 0);
 }
 
 TEST_F(FoldingArm, IsToldWhereEveryWayLeadsThroughItself) {
