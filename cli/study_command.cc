@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -9,9 +11,11 @@
 #include "bench/reproduce/parallel.h"
 #include "bench/result_file.h"
 #include "bench/study.h"
+#include "bench/study_log.h"
 #include "cli/command.h"
 #include "cli/number_range.h"
 #include "cli/out_folder.h"
+#include "cli/versions.h"
 #include "cli/wiring.h"
 #include "core/input_error.h"
 
@@ -26,6 +30,7 @@ struct StudyOptions {
   std::vector<std::string> settings, knowledge, predictors;
   std::vector<double> speeds;
   int episodes = 0, search = 0, jobs = 1;
+  bool resume = false;
   std::string down, across, out = "out/study";
 };
 
@@ -89,6 +94,17 @@ Problem MakeCase(const StudyOptions& options, Settings settings, const Factors& 
   return problem;
 }
 
+// What rows must have in common to stand in one table: all that is not a factor of theirs.
+std::string Identity(const StudyOptions& options, const Settings& settings,
+                     const DataPaths& paths) {
+  std::ifstream file(FindScenario(options.scenario, paths));
+  std::string text = VersionText() + "\n";
+  for (const auto& [key, value] : settings) text += key + "=" + value + "\n";
+  text += "varied: " + std::string(options.episodes > 0 ? "yes" : "no") + "\n";
+  text += "guesses: " + std::to_string(options.search) + "\n";
+  return text + std::string(std::istreambuf_iterator<char>(file), {});
+}
+
 int Study(const StudyOptions& options) {
   const DataPaths paths = FindDataPaths();
   const Settings settings = ParseSettings(options.settings);
@@ -102,18 +118,24 @@ int Study(const StudyOptions& options) {
   MakeCase(options, settings, cases.front(), paths);  // complain before the work begins
   const std::string out = MakeOutFolder(options.out);
 
+  StudyLog log(out + "/study.jsonl", Identity(options, settings, paths), options.resume);
   std::vector<StudyRow> rows(cases.size());
-  std::mutex printing;
+  std::mutex finishing;
   std::size_t num_done = 0;
   RunTasks(static_cast<int>(cases.size()), options.jobs, [&](int i) {
     const auto n = static_cast<std::size_t>(i);
+    if (const StudyRow* const row = log.Find(cases[n])) {
+      rows[n] = *row;
+      return;
+    }
     const Problem problem = MakeCase(options, settings, cases[n], paths);
     const auto knowledge = cases[n].find("knowledge");
     const bool search = knowledge != cases[n].end() && knowledge->second == kSearch;
     rows[n] =
         search ? RunStudySearch(problem.scenario, problem.robot, options.search, cases[n])
                : RunStudyEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths), cases[n]);
-    const std::lock_guard lock(printing);
+    const std::lock_guard lock(finishing);
+    log.Append(rows[n]);
     ++num_done;
     if (num_done % 50 == 0) std::fprintf(stderr, "%zu of %zu\n", num_done, cases.size());
   });
@@ -162,6 +184,9 @@ void AddStudyCommand(CommandLine& line) {
       ->required();
   study->add_option("-j,--jobs", options->jobs, "Episodes at a time [1]")
       ->check(NumberFrom(1, 256));
+  study->add_flag("--resume", options->resume,
+                  "Go on with a study that was interrupted, or that is to have more episodes: "
+                  "what its folder holds is not run again");
   study->add_option("--out", options->out, "Folder for the results [out/study]");
   study->callback([&line, options] { line.exit_code = Study(*options); });
 }

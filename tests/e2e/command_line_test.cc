@@ -173,6 +173,42 @@ TEST(Audit, LeavesATableFieldsAndAPicture) {
   EXPECT_EQ(num_zones, 2u);
 }
 
+TEST(Study, ThatWasInterruptedGoesOnWhereItWas) {
+  const TemporaryFolder folder;
+  const auto study = [&](const std::string& episodes, const std::string& out, bool resume) {
+    std::vector<std::string> arguments = {"study",       "hsr_walkway",
+                                          "--set",       "planner.name=straight_line",
+                                          "--set",       "horizon.duration_s=1",
+                                          "--knowledge", "static,prediction",
+                                          "--episodes",  episodes,
+                                          "--down",      "knowledge",
+                                          "--across",    "seed",
+                                          "--out",       (folder.path() / out).string()};
+    if (resume) arguments.push_back("--resume");
+    const Finished finished = Sidestep(arguments);
+    EXPECT_EQ(finished.exit_code, 0) << finished.err;
+  };
+  const auto text = [&](const std::string& file) {
+    std::ifstream stream(folder.path() / file);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+  };
+  study("2", "whole", false);
+  study("1", "parts", false);
+  const std::string first = text("parts/study.jsonl");
+  std::filesystem::resize_file(folder.path() / "parts/study.jsonl", first.size() - 5);
+  study("2", "parts", true);
+  EXPECT_EQ(text("parts/study.csv"), text("whole/study.csv"));
+  // What was there has not been run again: its lines stand where they stood.
+  const std::string kept = first.substr(0, first.find('\n', first.find('\n') + 1));
+  EXPECT_THAT(text("parts/study.jsonl"), StartsWith(kept));
+
+  const Finished other = Sidestep({"study", "hsr_walkway", "--knowledge", "static", "--episodes",
+                                   "2", "--down", "knowledge", "--across", "seed", "--resume",
+                                   "--out", (folder.path() / "parts").string()});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.err, HasSubstr("parts/study.jsonl: is of a study with another scenario"));
+}
+
 TEST(List, ShowsWhatCanBeNamed) {
   const Finished finished = Sidestep({"list"});
   EXPECT_EQ(finished.exit_code, 0);
