@@ -10,6 +10,7 @@
 
 #include "sdf/composite_field.h"
 #include "sdf/grid_field.h"
+#include "sdf/map/cells_near.h"
 #include "sdf/map/object_field.h"
 #include "sdf/map/static_map.h"
 #include "sdf/prediction/registry.h"
@@ -240,29 +241,10 @@ class KnownWorld final : public MappedWorld {
   // Frees the cells that an obstacle fills. A quarter of a cell beyond its surface, too: a cell is
   // filled when its centre is inside, and a rasteriser's rounding must not leave a skin behind.
   static void Erase(const ObjectObservation& obstacle, OccupancyGrid& grid) {
-    const GridSpec& spec = grid.spec;
-    const Pose X_OW = obstacle.X_WO.Inverse();
-    const Eigen::Vector3d reach_m =
-        obstacle.X_WO.rotation().toRotationMatrix().cwiseAbs() * HalfExtents(obstacle.shape) +
-        Eigen::Vector3d::Constant(spec.cell_m);
-    const Eigen::Vector3d p_WO = obstacle.X_WO.translation();
-    std::array<int, 3> first = spec.CellOf(p_WO - reach_m);
-    std::array<int, 3> last = spec.CellOf(p_WO + reach_m);
-    for (std::size_t a = 0; a < 3; ++a) {
-      first[a] = std::max(first[a], 0);
-      last[a] = std::min(last[a], spec.size[a] - 1);
-    }
-    for (int k = first[2]; k <= last[2]; ++k) {
-      for (int j = first[1]; j <= last[1]; ++j) {
-        for (int i = first[0]; i <= last[0]; ++i) {
-          if (!grid.At(i, j, k)) continue;
-          const Eigen::Vector3d p_OCell = X_OW * spec.Center(i, j, k);
-          if (SignedDistance(obstacle.shape, p_OCell) <= spec.cell_m / 4) {
-            grid.cells[spec.Index(i, j, k)] = 0;
-          }
-        }
-      }
-    }
+    const double skin_m = grid.spec.cell_m / 4;
+    VisitCellsNear(grid.spec, obstacle, skin_m, [&](std::size_t cell, double distance_m) {
+      if (distance_m <= skin_m) grid.cells[cell] = 0;
+    });
   }
 
   std::vector<ShapeField> fields_;  // of each obstacle, in the order of true_obstacles

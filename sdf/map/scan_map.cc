@@ -6,6 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "sdf/map/cells_near.h"
+
 namespace sidestep {
 namespace {
 
@@ -113,27 +115,10 @@ const OccupancyGrid& ScanMap::Update(const Scan& scan) {
 }
 
 void FillObjects(const std::vector<ObjectObservation>& objects, OccupancyGrid* occupancy) {
-  const GridSpec& grid = occupancy->spec;
   for (const ObjectObservation& object : objects) {
-    const double reach_m = HalfExtents(object.shape).norm();
-    const Eigen::Vector3d p_WO = object.X_WO.translation();
-    const std::array<int, 3> low = grid.CellOf(p_WO - Eigen::Vector3d::Constant(reach_m));
-    const std::array<int, 3> high = grid.CellOf(p_WO + Eigen::Vector3d::Constant(reach_m));
-    std::array<int, 3> first, last;
-    for (std::size_t a = 0; a < 3; ++a) {
-      first[a] = std::max(low[a], 0);
-      last[a] = std::min(high[a], grid.size[a] - 1);
-    }
-    const Pose X_OW = object.X_WO.Inverse();
-    for (int k = first[2]; k <= last[2]; ++k) {
-      for (int j = first[1]; j <= last[1]; ++j) {
-        for (int i = first[0]; i <= last[0]; ++i) {
-          if (SignedDistance(object.shape, X_OW * grid.Center(i, j, k)) < 0) {
-            occupancy->cells[grid.Index(i, j, k)] = 1;
-          }
-        }
-      }
-    }
+    VisitCellsNear(occupancy->spec, object, 0, [&](std::size_t cell, double distance_m) {
+      if (distance_m < 0) occupancy->cells[cell] = 1;
+    });
   }
 }
 
