@@ -2,6 +2,7 @@
 
 #include <ceres/solver.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <utility>
@@ -22,6 +23,10 @@ constexpr double kAccelerationWeight = 5;
 
 // Links keep this far apart. Spheres leave gaps of 18 mm and less (docs/robots.md).
 constexpr double kSelfEpsilon_m = 0.05;
+
+// Of each stage of a further seed. Those that lead anywhere do so soon; what is left to be had, the
+// next cycle gets from a warm start.
+constexpr int kTrialIterations = 12;
 
 constexpr double kColdTolerance = 1e-3;  // of the first stage, whose result is only a start
 
@@ -58,7 +63,8 @@ GpPlanner::GpPlanner(const RobotModel& robot, const PlannerSettings& settings)
   CheckPlannerSettings(settings);
 }
 
-PlanResult GpPlanner::Solve(const PlanRequest& request, const Trajectory& guess, bool warm) const {
+PlanResult GpPlanner::Solve(const PlanRequest& request, const Trajectory& guess,
+                            Stages stages) const {
   GpProblemOptions options;
   options.epsilon_m = settings_.epsilon_m;
   options.sigma_obs = settings_.sigma_obs;
@@ -72,19 +78,22 @@ PlanResult GpPlanner::Solve(const PlanRequest& request, const Trajectory& guess,
   if (settings_.acceleration_limits) limits.acceleration = kAccelerationWeight;
 
   GpProblem problem(robot(), request, guess, options);
-  SolveOutcome first_stage;
-  if (!warm) {
-    first_stage =
-        SolveByLevenbergMarquardt(problem.problem(), settings_.max_iterations, kColdTolerance);
-  }
+  int iterations = 0;
+  const int max_iterations = stages == Stages::kTrial
+                                 ? std::min(kTrialIterations, settings_.max_iterations)
+                                 : settings_.max_iterations;
+  const auto solve = [&](double function_tolerance) {
+    const SolveOutcome outcome =
+        SolveByLevenbergMarquardt(problem.problem(), max_iterations, function_tolerance);
+    iterations += outcome.iterations;
+    PlanResult result = MakeResult(request, problem.GetTrajectory(), outcome.converged);
+    result.iterations = iterations;
+    result.cost = problem.ComputeCost();
+    return result;
+  };
+  if (stages != Stages::kWithLimits) solve(kColdTolerance);
   problem.AddLimits(limits, settings_.velocity_scale, settings_.acceleration_scale);
-  const SolveOutcome outcome = SolveByLevenbergMarquardt(
-      problem.problem(), settings_.max_iterations, settings_.function_tolerance);
-
-  PlanResult result = MakeResult(request, problem.GetTrajectory(), outcome.converged);
-  result.iterations = first_stage.iterations + outcome.iterations;
-  result.cost = problem.ComputeCost();
-  return result;
+  return solve(settings_.function_tolerance);
 }
 
 bool GpPlanner::IsWithinLimits(const PlanResult& plan) const {
@@ -105,14 +114,14 @@ PlanResult GpPlanner::DoPlan(const PlanRequest& request) const {
   std::vector<Timing> timings = {Timing::kWholeTime, Timing::kLeaveLate, Timing::kArriveEarly};
   PlanResult best;
   if (request.initial) {
-    best = Solve(request, MakeWarmStart(request), /*warm=*/true);
+    best = Solve(request, MakeWarmStart(request), Stages::kWithLimits);
   } else {
-    best = Solve(request, MakeDirectMotion(request, timings.front()), /*warm=*/false);
+    best = Solve(request, MakeDirectMotion(request, timings.front()), Stages::kBoth);
     timings.erase(timings.begin());
   }
   int iterations = best.iterations;
   const auto attempt = [&](const Trajectory& guess) {
-    PlanResult other = Solve(request, guess, /*warm=*/false);
+    PlanResult other = Solve(request, guess, Stages::kTrial);
     iterations += other.iterations;
     if (IsBetter(other, best)) best = std::move(other);
   };

@@ -27,7 +27,12 @@ class GpPlanner final : public Planner {
 
  private:
   PlanResult DoPlan(const PlanRequest& request) const override;
-  PlanResult Solve(const PlanRequest& request, const Trajectory& guess, bool warm) const;
+  enum class Stages {
+    kWithLimits,  ///< for a warm start
+    kBoth,        ///< for a cold one
+    kTrial        ///< both, but few iterations: for one of many seeds
+  };
+  PlanResult Solve(const PlanRequest& request, const Trajectory& guess, Stages stages) const;
   bool IsWithinLimits(const PlanResult& plan) const;  // those that count by the settings
   /// Free within limits comes before free, free before not free; then what is safer.
   bool IsBetter(const PlanResult& a, const PlanResult& b) const;

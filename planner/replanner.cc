@@ -12,6 +12,7 @@
 namespace sidestep {
 namespace {
 
+constexpr const char* kBraked = "braked";
 constexpr int kMinFreeStates = 3;     // fewer leave nothing to choose
 constexpr double kOffPlan_rad = 0.1;  // a robot this far from its plan does not follow it
 constexpr double kGoalTolerance_rad = 0.01;
@@ -75,26 +76,30 @@ Replanner::Cycle Replanner::Run(EpisodeTime now, const JointState& state, Horizo
   TimedPlan shown = present;
   Clearance clearance;  // of what is shown
   if (const auto request = MakeRequest(now, state, t_effect, *field)) {
+    const auto plan = [&](const PlanRequest& to_plan) {
+      PlanResult result = planner_.Plan(to_plan);
+      record.iterations += result.iterations;
+      return result;
+    };
     const auto show = [&](PlanResult result, EpisodeTime start) {
       record.status = ToString(result.status);
-      record.iterations += result.iterations;
       record.cost = result.cost.total();
       clearance = result.clearance;
       shown = {std::move(result.trajectory), start};
     };
-    show(planner_.Plan(*request), request->start);
+    show(plan(*request), request->start);
     if (clearance.first_contact && running_) {
       TrajectoryPoint there = {request->q_start, request->v_start, {}};
       if (request->start < t_effect) {
         there = Sample(present.trajectory, t_effect - present.start);
-        PlanResult result = planner_.Plan(NewHorizon(t_effect, there.q, there.v, *field));
+        PlanResult result = plan(NewHorizon(t_effect, there.q, there.v, *field));
         if (IsSafer(result.clearance, clearance)) show(std::move(result), t_effect);
       }
       TimedPlan brake = Brake(t_effect, there);
       const Clearance braking = measure(brake, EndOf(brake));
       if (clearance.first_contact && IsSafer(braking, clearance) &&
           measure(present, EndOf(brake)).first_contact) {
-        record.status = "braked";
+        record.status = kBraked;
         clearance = braking;
         shown = std::move(brake);
       }
@@ -107,7 +112,10 @@ Replanner::Cycle Replanner::Run(EpisodeTime now, const JointState& state, Horizo
     clearance = measure(present, EndOf(present));
   }
   record.predicted_clearance_m = clearance.least_m;
-  if (record.accepted) running_ = cycle.plan = shown;
+  if (record.accepted) {
+    running_ = cycle.plan = shown;
+    is_braking_ = record.status == kBraked;
+  }
   cycle.optimise_s = ThreadCpuSeconds() - predicted_s;
 
   record.t = now;
@@ -137,7 +145,7 @@ std::optional<PlanRequest> Replanner::MakeRequest(EpisodeTime now, const JointSt
 
   const Trajectory& running = running_->trajectory;
   const int num_fixed = CountFixed(running_->start, options_.step_s, t_effect);
-  if (num_states_ - num_fixed >= kMinFreeStates) {
+  if (num_states_ - num_fixed >= kMinFreeStates && !is_braking_) {
     PlanRequest request = NewHorizon(running_->start, running.q.col(0), running.v.col(0), field);
     request.initial = running;
     request.num_fixed = num_fixed;

@@ -42,7 +42,8 @@ struct TimedPlan {
 /// A plan is taken if it is predicted to be free. If it is not, two ways out are weighed as well: a
 /// new horizon to the goal, which may have more time and begins with another guess; and to brake at
 /// the robot's acceleration limits and wait. Then the safest is taken (see clearance.h), and none
-/// if going on with what runs is as safe.
+/// if going on with what runs is as safe. A robot that brakes or waits looks for new horizons
+/// alone.
 class Replanner {
  public:
   /// `planner` and `world` are borrowed. @throws std::invalid_argument for options out of range.
@@ -81,6 +82,7 @@ class Replanner {
   ReplannerOptions options_;
   int num_states_;
   std::optional<TimedPlan> running_;
+  bool is_braking_ = false;  // what runs leads to no goal
 };
 
 }  // namespace sidestep
