@@ -86,14 +86,16 @@ PlanResult GpPlanner::Solve(const PlanRequest& request, const Trajectory& guess,
     const SolveOutcome outcome =
         SolveByLevenbergMarquardt(problem.problem(), max_iterations, function_tolerance);
     iterations += outcome.iterations;
-    PlanResult result = MakeResult(request, problem.GetTrajectory(), outcome.converged);
-    result.iterations = iterations;
-    result.cost = problem.ComputeCost();
-    return result;
+    return outcome.converged;
   };
   if (stages != Stages::kWithLimits) solve(kColdTolerance);
   problem.AddLimits(limits, settings_.velocity_scale, settings_.acceleration_scale);
-  return solve(settings_.function_tolerance);
+  const bool converged = solve(settings_.function_tolerance);
+
+  PlanResult result = MakeResult(request, problem.GetTrajectory(), converged);
+  result.iterations = iterations;
+  result.cost = problem.ComputeCost();
+  return result;
 }
 
 bool GpPlanner::IsWithinLimits(const PlanResult& plan) const {

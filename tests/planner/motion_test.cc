@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "planner/clearance.h"
 #include "planner/first_guess.h"
@@ -113,6 +114,33 @@ TEST(Clearance, IsThatOfTheNearestSphereAtTheNearestTime) {
   EXPECT_NEAR(least_m(1.4, 2), std::hypot(0.3, 0.4) - 0.1 - 0.04, 1e-9);
   EXPECT_NEAR(least_m(0, 0.6), std::hypot(0.3, 0.4) - 0.1 - 0.04, 1e-9);
   EXPECT_NEAR(least_m(0.2, 0.2), std::hypot(0.3, 0.8) - 0.1 - 0.04, 1e-9);
+}
+
+TEST(Clearance, NamesTheFirstMomentAtWhichSomethingTouches) {
+  const RobotModel arm = MakePlanarArm();
+  // The ball passes through the tip at t = 1, and touches it first 0.14 s earlier.
+  const BallField field({1, -1, 0}, {0, 1, 0}, 0.1);
+  const Trajectory rest{Eigen::VectorXd::Zero(1), Eigen::MatrixXd::Zero(2, 1),
+                        Eigen::MatrixXd::Zero(2, 1)};
+  const EpisodeTime start(0);
+  const Clearance touching = MeasureClearance(arm, field, rest, start, start, EpisodeTime(2));
+  ASSERT_TRUE(touching.first_contact);
+  EXPECT_NEAR(touching.first_contact->seconds(), 0.86 + 0.01, 0.011);
+  EXPECT_FALSE(MeasureClearance(arm, field, rest, start, start, EpisodeTime(0.8)).first_contact);
+}
+
+TEST(IsSafer, PrefersWhatIsFreeThenWhatIsFreeForLongerThenWhatKeepsMoreDistance) {
+  const Clearance wide{.least_m = 0.1, .first_contact = {}};
+  const Clearance narrow{.least_m = 0.01, .first_contact = {}};
+  const Clearance late{.least_m = -0.3, .first_contact = EpisodeTime(1.5)};
+  const Clearance early{.least_m = -0.1, .first_contact = EpisodeTime(1.2)};
+  const Clearance as_early{.least_m = -0.2, .first_contact = EpisodeTime(1.21)};
+  const Clearance in_order[] = {wide, narrow, late, early, as_early};
+  for (std::size_t i = 0; i < std::size(in_order); ++i) {
+    for (std::size_t j = 0; j < std::size(in_order); ++j) {
+      EXPECT_EQ(IsSafer(in_order[i], in_order[j]), i < j) << i << ", " << j;
+    }
+  }
 }
 
 TEST(Clearance, LeavesMountSpheresOut) {
