@@ -127,8 +127,8 @@ struct Scenario {
 
   std::map<std::string, std::string> choices;  ///< what was chosen, by the choice's name
 
-  /// Lines of the values that only other modules can judge (names of robots, configurations,
-  /// planners, ...), by their path in the file, so that they can complain as the reader does.
+  /// Lines of what only other modules can judge (names of robots, configurations, ...), by its path
+  /// in the file, so that they can complain as the reader does; 0 of a value that a setting gave.
   std::map<std::string, int> lines;
 };
 

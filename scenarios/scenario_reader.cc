@@ -389,11 +389,17 @@ Scenario Read(YamlReader top, const std::string& file, const Settings& settings)
   ReadPerception(top, scenario);
   top.CheckNoUnknownKeys();
   SeedMotions(scenario);
+  for (auto& [key, line] : scenario.lines) {
+    const bool is_set = std::any_of(settings.begin(), settings.end(), [&](const auto& setting) {
+      return key == setting.first || key.rfind(setting.first + ".", 0) == 0;
+    });
+    if (is_set) line = 0;
+  }
 
   const bool known = std::any_of(scenario.static_boxes.begin(), scenario.static_boxes.end(),
                                  [&](const StaticBox& box) { return box.name == scenario.mount; });
   if (!scenario.mount.empty() && !known) {
-    throw InputError(file, scenario.lines["robot.mount"], "robot.mount",
+    throw WrongValue(scenario, "robot.mount",
                      "'" + scenario.mount + "' is no static box of this scenario");
   }
   return scenario;
@@ -402,8 +408,10 @@ Scenario Read(YamlReader top, const std::string& file, const Settings& settings)
 }  // namespace
 
 InputError WrongValue(const Scenario& scenario, const std::string& key, const std::string& why) {
-  const auto line = scenario.lines.find(key);
-  return InputError(scenario.file, line == scenario.lines.end() ? 1 : line->second, key, why);
+  const auto found = scenario.lines.find(key);
+  const int line = found == scenario.lines.end() ? 1 : found->second;
+  if (line == 0) return InputError("--set " + key, why);
+  return InputError(scenario.file, line, key, why);
 }
 
 std::vector<std::string> ScenarioNames(const std::string& directory) {
