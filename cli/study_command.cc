@@ -126,6 +126,8 @@ int Study(const StudyOptions& options) {
     const auto n = static_cast<std::size_t>(i);
     if (const StudyRow* const row = log.Find(cases[n])) {
       rows[n] = *row;
+      const std::lock_guard lock(finishing);
+      ++num_done;
       return;
     }
     const Problem problem = MakeCase(options, settings, cases[n], paths);
