@@ -18,6 +18,10 @@
 namespace sidestep {
 namespace {
 
+constexpr double kAfterGoal = 0.5;     // s of episode after the goal is reached
+constexpr double kHorizons = 2;        // an episode lasts at most this many horizons
+constexpr double kTimeEpsilon = 1e-9;  // s; far below a physics step, far above rounding
+
 // Appends the indices at which two grids of one size differ. Most of a scan is as it was, and most
 // of the time of a plain loop would go into finding that out.
 void AppendChanges(const std::vector<std::uint8_t>& before, const std::vector<std::uint8_t>& now,
@@ -31,10 +35,6 @@ void AppendChanges(const std::vector<std::uint8_t>& before, const std::vector<st
     }
   }
 }
-
-constexpr double kAfterGoal = 0.5;     // s of episode after the goal is reached
-constexpr double kHorizons = 2;        // an episode lasts at most this many horizons
-constexpr double kTimeEpsilon = 1e-9;  // s; far below a physics step, far above rounding
 
 Recording BeginRecording(const Scenario& scenario, const RobotModel& robot,
                          const EpisodeWorld& world) {

@@ -1,6 +1,5 @@
 #include "bench/free_path_search.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -8,10 +7,9 @@
 #include "bench/planner_settings.h"
 #include "core/random.h"
 #include "core/shape.h"
+#include "planner/clearance.h"
 #include "planner/first_guess.h"
-#include "planner/guarded_spheres.h"
 #include "planner/registry.h"
-#include "planner/self_clearance.h"
 #include "sdf/distance_field.h"
 
 namespace sidestep {
@@ -90,24 +88,6 @@ class TrueField final : public DistanceField {
   std::vector<Placed> still_;
 };
 
-double TrueClearance(const RobotModel& robot, const TrueField& field, const Trajectory& motion) {
-  const std::vector<int> guarded = GuardedSpheres(robot);
-  const SelfClearance links(robot);
-  const double end_s = motion.t_s(motion.num_states() - 1) + kAfterGoal_s;
-  double least_m = std::numeric_limits<double>::infinity();
-  for (int i = 0; i * kJudgeStep_s <= end_s; ++i) {
-    const double t_s = i * kJudgeStep_s;
-    const TrajectoryPoint point = Sample(motion, HorizonOffset(t_s));
-    const SphereCenters centers = robot.ComputeSphereCenters(point.q, false);
-    least_m = std::min(least_m, links.Least(centers.p_WS));
-    for (const int s : guarded) {
-      const double distance_m = field.Sample(centers.p_WS.col(s), EpisodeTime(t_s)).distance_m;
-      least_m = std::min(least_m, distance_m - robot.sphere_radii_m()(s));
-    }
-  }
-  return least_m;
-}
-
 }  // namespace
 
 FreePath SearchFreePath(const Scenario& scenario, const RobotModel& robot, int max_guesses,
@@ -133,7 +113,9 @@ FreePath SearchFreePath(const Scenario& scenario, const RobotModel& robot, int m
     }
     ++best.guesses;
     const PlanResult plan = planner->Plan(request);
-    const double clearance_m = TrueClearance(robot, field, plan.trajectory);
+    const EpisodeTime begin(0), end(plan.trajectory.t_s(request.num_states - 1) + kAfterGoal_s);
+    const double clearance_m =
+        MeasureClearance(robot, field, plan.trajectory, begin, begin, end, kJudgeStep_s).least_m;
     if (clearance_m <= best.clearance_m) continue;
     best.clearance_m = clearance_m;
     best.trajectory = plan.trajectory;

@@ -21,14 +21,14 @@ struct Clearance {
 };
 
 /// Free before not free. Of two that are free, the one that keeps more distance; of two that are
-/// not, the one that is free for longer by more than a sampling step, since until then a way out
-/// may be found, else the one that keeps more distance.
+/// not, the one that is free for longer by more than 0.02 s, since until then a way out may be
+/// found, else the one that keeps more distance.
 bool IsSafer(const Clearance& a, const Clearance& b);
 
-/// Samples the motion along `trajectory`, which began at `start`, every 0.02 s from `from` to `to`,
-/// and at `to`. Before its first and after its last state it rests.
+/// Samples the motion along `trajectory`, which began at `start`, every `step_s` from `from` to
+/// `to`, and at `to`. Before its first and after its last state it rests.
 Clearance MeasureClearance(const RobotModel& robot, const DistanceField& field,
                            const Trajectory& trajectory, EpisodeTime start, EpisodeTime from,
-                           EpisodeTime to);
+                           EpisodeTime to, double step_s = 0.02);
 
 }  // namespace sidestep
