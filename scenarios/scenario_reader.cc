@@ -389,11 +389,12 @@ Scenario Read(YamlReader top, const std::string& file, const Settings& settings)
   ReadPerception(top, scenario);
   top.CheckNoUnknownKeys();
   SeedMotions(scenario);
-  for (auto& [key, line] : scenario.lines) {
+  for (auto& entry : scenario.lines) {
+    const std::string& key = entry.first;
     const bool is_set = std::any_of(settings.begin(), settings.end(), [&](const auto& setting) {
       return key == setting.first || key.rfind(setting.first + ".", 0) == 0;
     });
-    if (is_set) line = 0;
+    if (is_set) entry.second = 0;
   }
 
   const bool known = std::any_of(scenario.static_boxes.begin(), scenario.static_boxes.end(),
