@@ -63,8 +63,8 @@ GpPlanner::GpPlanner(const RobotModel& robot, const PlannerSettings& settings)
   CheckPlannerSettings(settings);
 }
 
-PlanResult GpPlanner::Solve(const PlanRequest& request, const Trajectory& guess,
-                            Stages stages) const {
+PlanResult GpPlanner::Solve(const PlanRequest& request, const Trajectory& guess, Stages stages,
+                            const Clearance* to_beat) const {
   GpProblemOptions options;
   options.epsilon_m = settings_.epsilon_m;
   options.sigma_obs = settings_.sigma_obs;
@@ -72,6 +72,7 @@ PlanResult GpPlanner::Solve(const PlanRequest& request, const Trajectory& guess,
   options.qc = settings_.qc;
   options.sigma_goal = settings_.sigma_goal;
   options.self_epsilon_m = kSelfEpsilon_m;
+  options.condensed = true;
   LimitWeights limits;
   if (settings_.position_limits) limits.position = kPositionWeight;
   if (settings_.velocity_limits) limits.velocity = kVelocityWeight;
@@ -89,6 +90,11 @@ PlanResult GpPlanner::Solve(const PlanRequest& request, const Trajectory& guess,
     return outcome.converged;
   };
   if (stages != Stages::kWithLimits) solve(kColdTolerance);
+  if (to_beat) {
+    PlanResult result = MakeResult(request, problem.GetTrajectory(), /*converged=*/false);
+    result.iterations = iterations;
+    if (result.clearance.first_contact && !IsSafer(result.clearance, *to_beat)) return result;
+  }
   problem.AddLimits(limits, settings_.velocity_scale, settings_.acceleration_scale);
   const bool converged = solve(settings_.function_tolerance);
 
@@ -123,7 +129,7 @@ PlanResult GpPlanner::DoPlan(const PlanRequest& request) const {
   }
   int iterations = best.iterations;
   const auto attempt = [&](const Trajectory& guess) {
-    PlanResult other = Solve(request, guess, Stages::kTrial);
+    PlanResult other = Solve(request, guess, Stages::kTrial, &best.clearance);
     iterations += other.iterations;
     if (IsBetter(other, best)) best = std::move(other);
   };
@@ -131,9 +137,11 @@ PlanResult GpPlanner::DoPlan(const PlanRequest& request) const {
     if (!best.clearance.first_contact && (request.initial || IsWithinLimits(best))) break;
     attempt(MakeDirectMotion(request, timing));
   }
-  // Other ones a cycle later: who waits without a way out tries more and more of them.
+  // A warm start has less time for one. Other ones a cycle later: who waits without a way out tries
+  // more and more of them.
+  const int num_detours = request.initial ? 0 : settings_.num_detours;
   RandomStream random(std::bit_cast<std::uint64_t>(FirstFreeTime(request).seconds()), "detours");
-  for (int i = 0; i < settings_.num_detours && best.clearance.first_contact; ++i) {
+  for (int i = 0; i < num_detours && best.clearance.first_contact; ++i) {
     attempt(MakeDetour(request, random));
   }
   best.iterations = iterations;

@@ -14,9 +14,10 @@ namespace sidestep {
 /// stiff limits from the beginning keep the solver on the wrong side of obstacles. A warm start is
 /// solved with limits at once. A plan is judged by its clearance, not by its cost. If a cold one is
 /// not free within the limits, or a warm one not free, direct motions with other timings are tried
-/// as seeds until one is, and the best counts. Where all of them touch something, detours over
-/// random configurations follow, other ones for another time. Links that the robot's
-/// self_collision() names are kept 0.05 m apart.
+/// as seeds until one is, and the best counts. Where all of them touch something, a cold start is
+/// followed by detours over random configurations, other ones for another time. Such seeds get few
+/// iterations, and no second stage if the first leaves them less safe than the best so far. Links
+/// that the robot's self_collision() names are kept 0.05 m apart.
 ///
 /// Source: Mukadam et al., "Continuous-time Gaussian process motion planning via probabilistic
 /// inference", IJRR 37(11):1319-1340, 2018.
@@ -32,7 +33,9 @@ class GpPlanner final : public Planner {
     kBoth,        ///< for a cold one
     kTrial        ///< both, but few iterations: for one of many seeds
   };
-  PlanResult Solve(const PlanRequest& request, const Trajectory& guess, Stages stages) const;
+  /// Gives up after the first stage if that touches something and is not safer than `to_beat`.
+  PlanResult Solve(const PlanRequest& request, const Trajectory& guess, Stages stages,
+                   const Clearance* to_beat = nullptr) const;
   bool IsWithinLimits(const PlanResult& plan) const;  // those that count by the settings
   /// Free within limits comes before free, free before not free; then what is safer.
   bool IsBetter(const PlanResult& a, const PlanResult& b) const;

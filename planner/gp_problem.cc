@@ -39,7 +39,8 @@ GpProblem::GpProblem(const RobotModel& robot, const PlanRequest& request, const 
       q_goal_(request.q_goal),
       first_free_(options.sigma_fixed ? 0 : request.num_fixed),
       states_(2 * robot.num_joints(), request.num_states),
-      hinge_(robot, *request.field, options.epsilon_m, options.sigma_obs, options.self_epsilon_m),
+      hinge_(robot, *request.field, options.epsilon_m, options.sigma_obs, options.self_epsilon_m,
+             options.condensed),
       problem_(ProblemOptions()) {
   const int n = robot.num_joints(), K = request.num_states;
   states_ << initial.q, initial.v;

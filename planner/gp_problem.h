@@ -29,6 +29,8 @@ struct GpProblemOptions {
   /// Links of the robot's self_collision() nearer to each other than this are pushed apart, with
   /// sigma_obs. The published formulation has none.
   std::optional<double> self_epsilon_m = std::nullopt;
+  /// Fewer residuals to the same end: see obstacle_hinge.h.
+  bool condensed = false;
 };
 
 /// Weights of the limit costs [1/rad, s/rad, s^2/rad]; 0 leaves a kind out.

@@ -18,7 +18,8 @@ struct PlannerSettings {
   double velocity_scale = 0.95;
   double acceleration_scale = 0.5;
   int max_iterations = 50;  ///< of one solve
-  /// Guesses over random configurations that are tried when no other leads to a free plan.
+  /// Guesses over random configurations that a cold start tries when no other leads to a free
+  /// plan.
   int num_detours = 4;
   double function_tolerance = 1e-4;
 };

@@ -19,7 +19,7 @@ InterpolatedObstacleCost::InterpolatedObstacleCost(ObstacleHinge& hinge,
                                                    const GpInterpolation& interpolation,
                                                    EpisodeTime t)
     : hinge_(hinge), lambda_(interpolation.Lambda.row(0)), psi_(interpolation.Psi.row(0)), t_(t) {
-  set_num_residuals(hinge.num_hinges());
+  set_num_residuals(hinge.num_residuals());
   *mutable_parameter_block_sizes() = {2 * hinge.num_joints(), 2 * hinge.num_joints()};
 }
 
@@ -30,12 +30,12 @@ bool InterpolatedObstacleCost::Evaluate(double const* const* parameters, double*
       jacobians != nullptr && (jacobians[0] != nullptr || jacobians[1] != nullptr);
   const Eigen::Map<const Eigen::MatrixX2d> x0(parameters[0], n, 2), x1(parameters[1], n, 2);
   hinge_.Evaluate(x0 * lambda_.transpose() + x1 * psi_.transpose(), t_, with_jacobian);
-  Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()) = hinge_.hinges();
+  Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()) = hinge_.residuals();
   if (with_jacobian && jacobians[0] != nullptr) {
-    SetJacobian(hinge_.jacobian(), lambda_, jacobians[0]);
+    SetJacobian(hinge_.residual_jacobian(), lambda_, jacobians[0]);
   }
   if (with_jacobian && jacobians[1] != nullptr) {
-    SetJacobian(hinge_.jacobian(), psi_, jacobians[1]);
+    SetJacobian(hinge_.residual_jacobian(), psi_, jacobians[1]);
   }
   return true;
 }

@@ -29,11 +29,18 @@ class ObstacleHinge {
  public:
   /// `robot` and `field` are borrowed. Without `self_epsilon_m` links do not see each other.
   ObstacleHinge(const RobotModel& robot, const DistanceField& field, double epsilon_m, double sigma,
-                std::optional<double> self_epsilon_m = std::nullopt);
+                std::optional<double> self_epsilon_m = std::nullopt, bool condensed = false);
 
   int num_joints() const { return robot_.num_joints(); }
   /// H: of each sphere but mount spheres, then of each pair of links.
   int num_hinges() const { return static_cast<int>(hinges_.size()); }
+
+  /// The residuals of a cost function. Plain, they are the hinges. Condensed, they are n + 1
+  /// numbers to the same effect (see condense_rows.h); from one evaluation to the next they may
+  /// change sign.
+  int num_residuals() const { return condensed_ ? num_joints() + 1 : num_hinges(); }
+  const Eigen::VectorXd& residuals() const { return condensed_ ? condensed_r_ : hinges_; }
+  const RowMajorMatrix& residual_jacobian() const { return condensed_ ? condensed_J_ : jacobian_; }
 
   /// Fills hinges() for q of shape n and, if asked, jacobian().
   void Evaluate(const Eigen::VectorXd& q, EpisodeTime t, bool with_jacobian);
@@ -41,6 +48,7 @@ class ObstacleHinge {
   const RowMajorMatrix& jacobian() const { return jacobian_; }  ///< H x n, d h / d q
 
  private:
+  void Condense(bool with_jacobian);
   void EvaluateLinks(const SphereCenters& centers, bool with_jacobian);
 
   const RobotModel& robot_;
@@ -54,6 +62,10 @@ class ObstacleHinge {
   DistanceSamples samples_;
   Eigen::VectorXd hinges_;
   RowMajorMatrix jacobian_;
+  bool condensed_;
+  Eigen::VectorXd condensed_r_;
+  RowMajorMatrix condensed_J_;
+  Eigen::MatrixXd active_;  // rows (J, h) of the hinges that are not idle
 };
 
 }  // namespace sidestep

@@ -171,6 +171,49 @@ TEST(ObstacleHinge, PushesLinksApartThatComeNearEachOther) {
   EXPECT_NEAR(world.hinge.jacobian()(2, 0), 0, 1e-12) << "the shoulder moves both";
 }
 
+// A cost of one configuration of the Panda, all of it within the margin of a ball.
+struct PandaNearABall {
+  RobotModel panda = RobotModel::FromFile(SIDESTEP_SOURCE_DIR "/models/panda/robot.yaml", Pose());
+  BallField field{{0.4, 0.2, 0.5}, {0, 0, 0}, 0.1};
+  Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(7, -0.5, 0.7);
+
+  // (J^T J, J^T r) and r^T r, with the number of rows.
+  struct Normal {
+    Eigen::MatrixXd JtJ_Jtr;
+    double squares;
+    Eigen::Index num_rows;
+  };
+  Normal Make(double epsilon_m, bool condensed) {
+    ObstacleHinge hinge(panda, field, epsilon_m, 0.05, /*self_epsilon_m=*/0.3, condensed);
+    hinge.Evaluate(q, EpisodeTime(0), /*with_jacobian=*/true);
+    const Eigen::MatrixXd J = hinge.residual_jacobian();
+    Eigen::MatrixXd both(7, 8);
+    both << J.transpose() * J, J.transpose() * hinge.residuals();
+    return {both, hinge.residuals().squaredNorm(), hinge.residuals().size()};
+  }
+};
+
+TEST(ObstacleHinge, CondensedHasTheSameCostGradientAndCurvatureInFewerRows) {
+  PandaNearABall world;
+  for (const double epsilon_m : {0.0, 0.05, 0.2, 2.0}) {
+    SCOPED_TRACE(epsilon_m);
+    const auto plain = world.Make(epsilon_m, false), condensed = world.Make(epsilon_m, true);
+    EXPECT_EQ(condensed.num_rows, 8);
+    EXPECT_GT(plain.num_rows, 2 * condensed.num_rows);
+    EXPECT_GT(plain.squares, 0);
+    EXPECT_NEAR(condensed.squares, plain.squares, 1e-12 * plain.squares);
+    EXPECT_LE((condensed.JtJ_Jtr - plain.JtJ_Jtr).norm(), 1e-12 * plain.JtJ_Jtr.norm());
+  }
+}
+
+TEST(ObstacleHinge, CondensedHasTheSameCostWithoutAJacobian) {
+  PandaNearABall world;
+  ObstacleHinge hinge(world.panda, world.field, 0.2, 0.05, 0.3, /*condensed=*/true);
+  hinge.Evaluate(world.q, EpisodeTime(0), /*with_jacobian=*/false);
+  const double squares = world.Make(0.2, false).squares;
+  EXPECT_NEAR(hinge.residuals().squaredNorm(), squares, 1e-12 * squares);
+}
+
 TEST(ObstacleHinge, HasNoneForLinksWithoutAMargin) {
   FoldedWorld world;
   EXPECT_EQ(ObstacleHinge(world.arm, world.field, 0.2, 0.05).num_hinges(), 2);
