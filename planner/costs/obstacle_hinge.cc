@@ -57,7 +57,8 @@ void ObstacleHinge::Condense(bool with_jacobian) {
   }
   Eigen::Index num_active = 0;
   for (Eigen::Index h = 0; h < hinges_.size(); ++h) {
-    if (hinges_(h) > 0) active_.row(num_active++) << jacobian_.row(h), hinges_(h);
+    if (hinges_(h) <= 0) continue;
+    active_.row(num_active++) << jacobian_.row(h), hinges_(h);
   }
   const Eigen::Index num_rows = CondenseRows(active_, num_active);
   condensed_J_.topRows(num_rows) = active_.topLeftCorner(num_rows, n);
