@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <functional>
 #include <random>
 #include <stdexcept>
 
@@ -50,18 +51,13 @@ std::string Field(const std::string& text) {
   return quoted + "\"";
 }
 
-}  // namespace
-
-StudyRow RunStudyEpisode(const Scenario& scenario, const RobotModel& robot,
-                         const WorldFactory& make_world,
-                         const std::map<std::string, std::string>& factors) {
+// The row that `run` fills; what goes wrong is a row too.
+StudyRow MakeRow(const std::map<std::string, std::string>& factors,
+                 const std::function<void(StudyRow&)>& run) {
   StudyRow row;
   row.factors = factors;
   try {
-    const EpisodeResult result = RunEpisode(scenario, robot, make_world);
-    CheckFinite(result.recording);
-    row.outcome = ToString(result.outcome);
-    row.metrics = result.recording.metrics;
+    run(row);
   } catch (const std::exception& error) {
     row.outcome = "failed";
     row.error = error.what();
@@ -69,14 +65,26 @@ StudyRow RunStudyEpisode(const Scenario& scenario, const RobotModel& robot,
   return row;
 }
 
+}  // namespace
+
+StudyRow RunStudyEpisode(const Scenario& scenario, const RobotModel& robot,
+                         const WorldFactory& make_world,
+                         const std::map<std::string, std::string>& factors) {
+  return MakeRow(factors, [&](StudyRow& row) {
+    const EpisodeResult result = RunEpisode(scenario, robot, make_world);
+    CheckFinite(result.recording);
+    row.outcome = ToString(result.outcome);
+    row.metrics = result.recording.metrics;
+  });
+}
+
 StudyRow RunStudySearch(const Scenario& scenario, const RobotModel& robot, int max_guesses,
                         const std::map<std::string, std::string>& factors) {
-  const FreePath path = SearchFreePath(scenario, robot, max_guesses, scenario.seed);
-  StudyRow row;
-  row.factors = factors;
-  row.outcome = ToString(path.found ? Outcome::kGoal : Outcome::kCollision);
-  row.metrics["min_clearance_m"] = path.clearance_m;
-  return row;
+  return MakeRow(factors, [&](StudyRow& row) {
+    const FreePath path = SearchFreePath(scenario, robot, max_guesses, scenario.seed);
+    row.outcome = ToString(path.found ? Outcome::kGoal : Outcome::kCollision);
+    row.metrics["min_clearance_m"] = path.clearance_m;
+  });
 }
 
 void VaryObstacles(Scenario& scenario, std::uint64_t seed) {

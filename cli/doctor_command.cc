@@ -48,7 +48,7 @@ void CheckData(Report& report) {
       }
       ++num_scenarios;
     }
-    report.Good("data", std::to_string(num_scenarios) + " scenarios, each with its robot, in " +
+    report.Good("data", std::to_string(num_scenarios) + " scenarios and their robots, in " +
                             paths.scenarios);
   } catch (const std::exception& error) {
     report.Bad("data", error.what(), "set SIDESTEP_DATA_DIR to a folder with models/, scenarios/");

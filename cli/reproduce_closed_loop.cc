@@ -22,9 +22,10 @@ struct ClosedLoopCommand {
 int Run(const ClosedLoopCommand& command) {
   PublishedRates published;
   if (!command.published_predictions.empty()) {
-    published.predictions = CsvTable::Read(command.published_predictions);
+    published.predictions = CsvTable::Read(command.published_predictions, {kVoxelsColumn});
   }
-  if (!command.published_loops.empty()) published.loops = CsvTable::Read(command.published_loops);
+  if (!command.published_loops.empty())
+    published.loops = CsvTable::Read(command.published_loops, {kVoxelsColumn});
   const DataPaths paths = FindDataPaths();
   const Problem problem = LoadProblem("hsr_walkway", {}, paths);
   const std::string out = MakeOutFolder(command.out);

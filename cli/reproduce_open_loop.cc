@@ -97,7 +97,8 @@ int Run(const std::string& name, const OpenLoopCommand& command) {
       MakeStudyOptions(command, static_cast<int>(experiment.pairs.size()));
   // Read before the long work, so that a wrong path is found at once.
   std::optional<CsvTable> published_table;
-  if (!command.published.empty()) published_table = CsvTable::Read(command.published);
+  if (!command.published.empty())
+    published_table = CsvTable::Read(command.published, {"pair", "speed_m_per_s"});
   const std::string out = MakeOutFolder(command.out.empty() ? "out/" + name : command.out);
 
   const OpenLoopStudy study =

@@ -31,7 +31,7 @@ int Run(const SdfTimingCommand& command) {
     throw InputError("--scenes", "must be of " + list + ", is '" + scene + "'");
   }
   std::optional<CsvTable> published;
-  if (!command.published.empty()) published = CsvTable::Read(command.published);
+  if (!command.published.empty()) published = CsvTable::Read(command.published, {kVoxelsColumn});
   const std::string out = MakeOutFolder(command.out);
 
   const std::size_t num_sizes = command.options.voxels_per_side.size();

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -40,6 +41,11 @@ using Factors = std::map<std::string, std::string>;
 std::vector<Factors> Cross(const std::vector<Factors>& cases, const std::string& factor,
                            const std::vector<std::string>& values) {
   if (values.empty()) return cases;
+  for (auto value = values.begin(); value != values.end(); ++value) {
+    if (std::find(values.begin(), value, *value) != value) {
+      throw InputError(factor, "'" + *value + "' is given twice");
+    }
+  }
   std::vector<Factors> crossed;
   for (const Factors& one : cases) {
     for (const std::string& value : values) {
@@ -52,7 +58,7 @@ std::vector<Factors> Cross(const std::vector<Factors>& cases, const std::string&
 
 std::string Short(double value) {
   char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
+  std::snprintf(text, sizeof text, "%.12g", value);
   return text;
 }
 
@@ -68,6 +74,9 @@ std::vector<Factors> Cases(const StudyOptions& options, const Settings& settings
   for (int seed = 1; seed <= options.episodes; ++seed) seeds.push_back(std::to_string(seed));
   cases = Cross(cases, "speed_m_s", speeds);
   std::vector<std::string> knowledge = options.knowledge;
+  if (std::find(knowledge.begin(), knowledge.end(), kSearch) != knowledge.end()) {
+    throw InputError("--knowledge", "'search' is asked for by --search");
+  }
   if (options.search > 0) knowledge.push_back(kSearch);
   cases = Cross(cases, "knowledge", knowledge);
   cases = Cross(cases, "predictor", options.predictors);
@@ -108,6 +117,9 @@ std::string Identity(const StudyOptions& options, const Settings& settings,
 int Study(const StudyOptions& options) {
   const DataPaths paths = FindDataPaths();
   const Settings settings = ParseSettings(options.settings);
+  if (options.episodes > 0 && settings.count("seed") != 0) {
+    throw InputError("--set seed", "is what --episodes varies");
+  }
   const std::vector<Factors> cases = Cases(options, settings, paths);
   for (const std::string* const factor : {&options.down, &options.across}) {
     if (cases.front().count(*factor) == 0) {
@@ -115,8 +127,16 @@ int Study(const StudyOptions& options) {
                        "'" + *factor + "' does not vary in this study");
     }
   }
-  MakeCase(options, settings, cases.front(), paths);  // complain before the work begins
+  for (const Factors& one : cases) {  // complain before the work begins
+    const auto seed = one.find("seed");
+    if (seed == one.end() || seed->second == "1") MakeCase(options, settings, one, paths);
+  }
   const std::string out = MakeOutFolder(options.out);
+  if (!options.resume && std::filesystem::exists(out + "/study.jsonl")) {
+    throw InputError("--out", "'" + out +
+                                  "' holds a study: go on with it by --resume, or choose another "
+                                  "folder");
+  }
 
   StudyLog log(out + "/study.jsonl", Identity(options, settings, paths), options.resume);
   std::vector<StudyRow> rows(cases.size());

@@ -20,12 +20,20 @@ void Override(Scenario& scenario, const Overrides& overrides) {
   if (overrides.predictor) scenario.predictor = *overrides.predictor;
   if (overrides.latency_ms) scenario.latency_s = *overrides.latency_ms / 1e3;
   if (overrides.epsilon_m) scenario.epsilon_m = *overrides.epsilon_m;
+  if (scenario.epsilon_m > kMaxMarginCells * scenario.grid.cell_m) {
+    throw InputError("--epsilon", "must be at most " + std::to_string(kMaxMarginCells) +
+                                      " cells of the workspace");
+  }
   if (overrides.speed_m_s) {
     if (scenario.moving_obstacles.empty()) {
       throw InputError("--speed", "this scenario has no moving obstacle");
     }
     for (MovingObstacle& obstacle : scenario.moving_obstacles) {
       std::visit([&](auto& motion) { motion.speed_m_s = *overrides.speed_m_s; }, obstacle.motion);
+      const auto* const accelerated = std::get_if<AcceleratedMotion>(&obstacle.motion);
+      if (accelerated && accelerated->max_speed_m_s < accelerated->speed_m_s) {
+        throw InputError("--speed", "is above the max_speed_m_s of '" + obstacle.name + "'");
+      }
     }
   }
   if (scenario.latency_s > scenario.horizon_s) {

@@ -21,7 +21,7 @@ constexpr double kPositionWeight = 1000;
 constexpr double kVelocityWeight = 30;
 constexpr double kAccelerationWeight = 5;
 
-// Links keep this far apart. Spheres leave gaps of 18 mm and less (docs/robots.md).
+// Links keep this far apart: spheres leave gaps between them and the shapes (docs/robots.md).
 constexpr double kSelfEpsilon_m = 0.05;
 
 // Of each stage of a further seed. Those that lead anywhere do so soon; what is left to be had, the

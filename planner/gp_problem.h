@@ -39,8 +39,8 @@ struct LimitWeights {
 };
 
 /// A plan request as a least-squares problem, apart from any solver: one block of 2n parameters
-/// (q, v) a support state, one residual block a configuration. This is the plain formulation that
-/// faster ones must match in cost and gradient.
+/// (q, v) a support state, one residual block a configuration. Unless condensed, this is the plain
+/// formulation that faster ones must match in cost and gradient.
 ///
 /// Its cost functions share buffers: evaluate it in one thread.
 class GpProblem {

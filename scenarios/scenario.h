@@ -16,6 +16,9 @@
 
 namespace sidestep {
 
+/// The planner's margin is at most so many cells of the workspace; it pads objects' fields.
+inline constexpr int kMaxMarginCells = 256;
+
 /// A body that never moves: a box.
 struct StaticBox {
   std::string name;

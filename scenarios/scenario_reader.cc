@@ -13,6 +13,7 @@ namespace {
 
 // A field of 512^3 floats takes 512 MiB; more than that is a slip of the pen, not a workspace.
 constexpr int kMaxCellsPerAxis = 512;
+constexpr double kMinCell_m = 0.001, kMaxCell_m = 10;
 // Bounds against slips such as milliseconds given as seconds; generous for any arm.
 constexpr double kMaxHorizon = 60, kMaxRateHz = 1000;
 constexpr int kMaxStates = 1001;
@@ -67,6 +68,9 @@ void ReadWorkspace(const YamlReader& top, Scenario& scenario) {
   const YamlReader map = top.GetMap("workspace");
   scenario.grid.first_center_m = map.GetVector3("first_center_m");
   scenario.grid.cell_m = map.GetPositive("cell_m");
+  if (scenario.grid.cell_m < kMinCell_m || scenario.grid.cell_m > kMaxCell_m) {
+    map.Fail("cell_m", "must be from 0.001 to 10 m");
+  }
   const Eigen::Vector3d cells = map.GetPositiveVector3("cells");
   for (int axis = 0; axis < 3; ++axis) {
     const double n = cells(axis);
@@ -259,6 +263,10 @@ void ReadPlanner(const YamlReader& top, Scenario& scenario) {
   scenario.planner = map.GetString("name");
   scenario.lines["planner.name"] = map.Line("name");
   scenario.epsilon_m = map.GetNonNegative("epsilon_m");
+  if (scenario.epsilon_m > kMaxMarginCells * scenario.grid.cell_m) {
+    map.Fail("epsilon_m",
+             "must be at most " + std::to_string(kMaxMarginCells) + " cells of the workspace");
+  }
   scenario.sigma_obs = map.GetPositive("sigma_obs");
   scenario.num_interpolated = map.GetInt("n_int");
   if (scenario.num_interpolated < 0 || scenario.num_interpolated > 100) {

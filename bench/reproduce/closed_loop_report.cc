@@ -12,7 +12,6 @@
 namespace sidestep {
 namespace {
 
-constexpr const char* kVoxels = "voxels_per_side";
 constexpr double kPlotStep_s = 0.01;  // a point each, of the control rate's 1 kHz
 
 // The columns of the rates: name, words, and whether a line of the figure.
@@ -50,7 +49,7 @@ std::vector<double> Collect(const std::vector<PredictionTimes>& predictions,
 std::optional<double> Lookup(const std::optional<CsvTable>& table, int voxels,
                              const std::string& column) {
   if (!table) return {};
-  const auto key = table->Find(kVoxels), value = table->Find(column);
+  const auto key = table->Find(kVoxelsColumn), value = table->Find(column);
   if (!key || !value) return {};
   std::vector<double> values;
   for (std::size_t row = 0; row < table->num_rows(); ++row) {
@@ -164,7 +163,7 @@ std::vector<std::vector<std::string>> RateRows(const CsvTable& rates) {
 }  // namespace
 
 CsvTable MakeRatesTable(const ClosedLoopStudy& study, const PublishedRates& published) {
-  std::vector<std::string> columns = {kVoxels, "n_cycles"};
+  std::vector<std::string> columns = {kVoxelsColumn, "n_cycles"};
   for (const Rate& rate : kRates) columns.emplace_back(rate.column);
   for (const Rate& rate : kRates) {
     if (*rate.published != '\0') columns.emplace_back(rate.published);

@@ -43,7 +43,7 @@ std::string Format(double value) {
 
 }  // namespace
 
-CsvTable CsvTable::Read(const std::string& path) {
+CsvTable CsvTable::Read(const std::string& path, const std::vector<std::string>& required) {
   std::ifstream stream(path);
   if (!stream || std::filesystem::is_directory(path)) throw InputError(path, "cannot be read");
   std::string line;
@@ -53,6 +53,9 @@ CsvTable CsvTable::Read(const std::string& path) {
   CsvTable table(Split(line));
   if (std::set(table.columns_.begin(), table.columns_.end()).size() != table.columns_.size()) {
     throw InputError(path, 1, "", "a column comes twice");
+  }
+  for (const std::string& column : required) {
+    if (!table.Find(column)) throw InputError(path, 1, "", "has no column '" + column + "'");
   }
   for (int number = 2; std::getline(stream, line); ++number) {
     if (line.empty() || line == "\r") continue;

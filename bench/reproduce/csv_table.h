@@ -6,6 +6,9 @@
 
 namespace sidestep {
 
+/// What the published tables of times are sorted by.
+inline constexpr const char* kVoxelsColumn = "voxels_per_side";
+
 /// A table of numbers with a header, as the published results come. Fields may be empty.
 class CsvTable {
  public:
@@ -14,7 +17,8 @@ class CsvTable {
   /// Numbers only, no quotes; empty lines are skipped.
   /// @throws InputError FILE:LINE: WHY if it is missing, not text, has no header, a column twice, a
   /// row of another length, or a field that is neither empty nor a finite number.
-  static CsvTable Read(const std::string& path);
+  /// @param required names columns that it must have. @throws InputError likewise without one.
+  static CsvTable Read(const std::string& path, const std::vector<std::string>& required = {});
 
   /// As Read wants it, every number with the fewest digits that give it back exactly.
   std::string ToText() const;

@@ -38,7 +38,10 @@ struct TableComparison {
 
   int CountsCompared() const;
   int CountsAgreeing() const;
-  bool AllCountsAgree() const { return CountsCompared() == CountsAgreeing(); }
+  /// False too where there was nothing to compare.
+  bool AllCountsAgree() const {
+    return CountsCompared() > 0 && CountsCompared() == CountsAgreeing();
+  }
 };
 
 /// Costs that differ by more than this share are listed.

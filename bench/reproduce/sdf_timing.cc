@@ -14,8 +14,6 @@ constexpr double kMargin_m = 0.2;
 constexpr EpisodeTime kFirstSeen(0.2), kSecondSeen(0.6);
 constexpr int kMoments = 31;
 
-constexpr const char* kVoxels = "voxels_per_side";
-
 // A measure of each prediction, and what the published file calls the mean of the same thing.
 struct Measure {
   const char* name;
@@ -51,7 +49,7 @@ double Get(const CsvTable& table, std::size_t row, const std::string& column) {
 std::optional<double> Published(const std::optional<CsvTable>& published, double voxels,
                                 const std::string& column) {
   if (!published || column.empty()) return {};
-  const auto key = published->Find(kVoxels), value = published->Find(column);
+  const auto key = published->Find(kVoxelsColumn), value = published->Find(column);
   if (!key || !value) return {};
   for (std::size_t row = 0; row < published->num_rows(); ++row) {
     if (published->At(row, *key) == voxels) return published->At(row, *value);
@@ -71,7 +69,7 @@ struct Entry {
 };
 std::vector<Entry> Entries(const CsvTable& ours, std::size_t row,
                            const std::optional<CsvTable>& published) {
-  const double voxels = Get(ours, row, kVoxels);
+  const double voxels = Get(ours, row, kVoxelsColumn);
   const auto text = [&](const char* measure, const std::string& their_column) {
     std::string cell = FormatTime(Get(ours, row, Name(measure, "median")));
     if (const auto theirs = Published(published, voxels, their_column)) {
@@ -127,7 +125,8 @@ std::vector<SdfTimingSize> RunSdfTiming(const SdfTimingOptions& options,
 }
 
 CsvTable MakeSdfTimingTable(const std::vector<SdfTimingSize>& sizes) {
-  std::vector<std::string> columns = {kVoxels, "cell_size_m", "n_predictions", "n_init_values"};
+  std::vector<std::string> columns = {kVoxelsColumn, "cell_size_m", "n_predictions",
+                                      "n_init_values"};
   const auto add_columns = [&columns](const char* measure) {
     for (const char* const statistic : {"median", "q10", "q90"}) {
       columns.push_back(Name(measure, statistic));
@@ -171,7 +170,7 @@ Figure MakeSdfTimingFigure(const CsvTable& ours, const std::optional<CsvTable>& 
     theirs.style = Series::Style::kOpenPoints;
     curve.color = theirs.color = color++;
     for (std::size_t row = 0; row < ours.num_rows(); ++row) {
-      const double voxels = Get(ours, row, kVoxels);
+      const double voxels = Get(ours, row, kVoxelsColumn);
       curve.x.push_back(voxels);
       curve.y.push_back(Get(ours, row, Name(measure, "median")));
       curve.low.push_back(Get(ours, row, Name(measure, "q10")));
@@ -199,7 +198,7 @@ std::string DescribeSdfTiming(const CsvTable& ours, const std::optional<CsvTable
   text += published ? " (in brackets the published means, ms)\n" : "\n";
   for (std::size_t row = 0; row < ours.num_rows(); ++row) {
     char line[128];
-    std::snprintf(line, sizeof line, "%.0f voxels a side, %g m\n", Get(ours, row, kVoxels),
+    std::snprintf(line, sizeof line, "%.0f voxels a side, %g m\n", Get(ours, row, kVoxelsColumn),
                   Get(ours, row, "cell_size_m"));
     text += line;
     for (const Entry& entry : Entries(ours, row, published)) {
@@ -244,7 +243,7 @@ std::string MakeSdfTimingPage(const SdfTimingOptions& options, const CsvTable& o
   std::vector<std::string> header = {"voxels a side"};
   std::vector<std::vector<std::string>> rows, errors;
   for (std::size_t row = 0; row < ours.num_rows(); ++row) {
-    rows.push_back({Format("%.0f", Get(ours, row, kVoxels))});
+    rows.push_back({Format("%.0f", Get(ours, row, kVoxelsColumn))});
     errors.push_back({rows.back().front(), Format("%.0f", Get(ours, row, "n_compared")),
                       Format("%g", Get(ours, row, "largest_error_free_m")),
                       Format("%g", Get(ours, row, "largest_error_inside_m"))});

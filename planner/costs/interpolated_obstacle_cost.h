@@ -12,7 +12,8 @@ namespace sidestep {
 /// obstacle_hinge.h at the configuration that the GP interpolates,
 ///   q(tau) = lambda_1 q0 + lambda_2 v0 + psi_1 q1 + psi_2 v1   (top rows of Lambda and Psi).
 /// Parameters: two blocks, the states (q, v) at the interval's begin and end, shape 2n each.
-/// Residuals: the hinges. Jacobian: analytic, by the chain rule onto the four vectors.
+/// Residuals: those of the hinge, plain or condensed. Jacobian: analytic, by the chain rule onto
+/// the four vectors.
 class InterpolatedObstacleCost final : public ceres::CostFunction {
  public:
   /// @param t the time of the interpolated configuration.

@@ -11,7 +11,8 @@ namespace sidestep {
 
 /// Keeps the robot's spheres away from obstacles at one support state: the hinges of
 /// obstacle_hinge.h at q and the state's time.
-/// Parameters: one block, the state (q, v), shape 2n. Residuals: the hinges. Jacobian: analytic.
+/// Parameters: one block, the state (q, v), shape 2n. Residuals: those of the
+/// hinge, plain or condensed. Jacobian: analytic.
 class ObstacleCost final : public ceres::CostFunction {
  public:
   /// `hinge` is borrowed; costs that are evaluated in turn may share it.

@@ -36,8 +36,8 @@ class ObstacleHinge {
   int num_hinges() const { return static_cast<int>(hinges_.size()); }
 
   /// The residuals of a cost function. Plain, they are the hinges. Condensed, they are n + 1
-  /// numbers to the same effect (see condense_rows.h); from one evaluation to the next they may
-  /// change sign.
+  /// numbers to the same effect (see condense_rows.h), of which only the length, R^T R and R^T r
+  /// mean anything: evaluated without a Jacobian, their length stands in the last of them.
   int num_residuals() const { return condensed_ ? num_joints() + 1 : num_hinges(); }
   const Eigen::VectorXd& residuals() const { return condensed_ ? condensed_r_ : hinges_; }
   const RowMajorMatrix& residual_jacobian() const { return condensed_ ? condensed_J_ : jacobian_; }

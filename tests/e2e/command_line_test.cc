@@ -66,6 +66,31 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"SpeedIsNotANumber", {"run", "hsr_walkway", "--speed", "nan"}, {"--speed"}},
         Mistake{"NegativeSeed", {"run", "hsr_walkway", "--seed", "-3"}, {"--seed"}},
         Mistake{"NegativeEpsilon", {"run", "hsr_walkway", "--epsilon", "-0.1"}, {"--epsilon"}},
+        Mistake{"EpsilonIsInMillimetres",
+                {"run", "hsr_walkway", "--set", "planner.epsilon_m=200"},
+                {"--set planner.epsilon_m: must be at most 256 cells of the workspace"}},
+        Mistake{"EpsilonIsManyOfTheScenariosCells",
+                {"run", "hsr_walkway", "--set", "workspace.cell_m=0.01", "--epsilon", "9"},
+                {"--epsilon: must be at most 256 cells of the workspace"}},
+        Mistake{"SpeedIsAboveTheScenariosMaximum",
+                {"run", "walkway_behaviours", "--set", "behaviour=speed_up_2", "--speed", "90"},
+                {"--speed: is above the max_speed_m_s of 'hsr'"}},
+        Mistake{"StudyOfAPredictorTwice",
+                {"study", "hsr_walkway", "--predictor", "imm,imm", "--down", "predictor",
+                 "--across", "predictor"},
+                {"predictor: 'imm' is given twice"}},
+        Mistake{"StudyOfAnUnknownPredictor",
+                {"study", "hsr_walkway", "--predictor", "imm,crystal_ball", "--down", "predictor",
+                 "--across", "predictor"},
+                {"--predictor: must be one of", "'crystal_ball'"}},
+        Mistake{"StudyOfTheSearchAsKnowledge",
+                {"study", "hsr_walkway", "--knowledge", "search", "--down", "knowledge", "--across",
+                 "knowledge"},
+                {"--knowledge: 'search' is asked for by --search"}},
+        Mistake{"StudyOfSeedsAndASeed",
+                {"study", "hsr_walkway", "--episodes", "2", "--set", "seed=9", "--down", "seed",
+                 "--across", "seed"},
+                {"--set seed: is what --episodes varies"}},
         Mistake{"LatencyBeyondHorizon",
                 {"run", "hsr_walkway", "--latency-ms", "4000"},
                 {"--latency-ms: must not exceed the horizon"}},
@@ -119,12 +144,13 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Help, NamesEveryCommandAndTheExitCodes) {
   const Finished finished = Sidestep({"--help"});
   EXPECT_EQ(finished.exit_code, 0);
-  EXPECT_THAT(finished.out, AllOf(HasSubstr("run"), HasSubstr("compare"), HasSubstr("render"),
-                                  HasSubstr("list"), HasSubstr("doctor"), HasSubstr("Exit codes")));
-  for (const char* const command : {"run", "compare", "render", "list", "doctor"}) {
+  EXPECT_THAT(finished.out, HasSubstr("Exit codes"));
+  for (const std::string command :
+       {"run", "compare", "render", "list", "doctor", "reproduce", "study", "audit", "field"}) {
+    EXPECT_THAT(finished.out, HasSubstr("\n  " + command + " "));
     const Finished help = Sidestep({command, "--help"});
     EXPECT_EQ(help.exit_code, 0);
-    EXPECT_THAT(help.out, HasSubstr(command));
+    EXPECT_THAT(help.out, HasSubstr("Usage: sidestep " + command));
   }
 }
 
@@ -208,6 +234,11 @@ TEST(Study, ThatWasInterruptedGoesOnWhereItWas) {
   const std::string kept = first.substr(0, first.find('\n', first.find('\n') + 1));
   EXPECT_THAT(text("parts/study.jsonl"), StartsWith(kept));
 
+  const Finished again =
+      Sidestep({"study", "hsr_walkway", "--episodes", "2", "--down", "seed", "--across", "seed",
+                "--out", (folder.path() / "parts").string()});
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_THAT(again.err, HasSubstr("parts' holds a study: go on with it by --resume"));
   const Finished other = Sidestep({"study", "hsr_walkway", "--knowledge", "static", "--episodes",
                                    "2", "--down", "knowledge", "--across", "seed", "--resume",
                                    "--out", (folder.path() / "parts").string()});
