@@ -96,9 +96,7 @@ INSTANTIATE_TEST_SUITE_P(
         Expected{"prediction_error_1000ms_m", std::hypot(0.1, 0.01), 1e-12}),
     [](const auto& test) { return std::string(test.param.metric); });
 
-TEST(Metrics, AllHaveAKnownAnswerHere) {
-  // A metric that is added wants a row above. The one 2 s ahead looks beyond that recording's end.
-  EXPECT_EQ(Metrics().size(), 10u + 5);
+TEST(Metrics, ThatLookBeyondTheEndOfARecordingAreNotANumber) {
   EXPECT_TRUE(std::isnan(Find("prediction_error_2000ms_m").compute(SmoothReach())));
 }
 
