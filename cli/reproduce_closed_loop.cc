@@ -4,6 +4,7 @@
 
 #include "bench/reproduce/closed_loop.h"
 #include "bench/reproduce/closed_loop_report.h"
+#include "bench/reproduce/published_columns.h"
 #include "bench/result_file.h"
 #include "cli/number_range.h"
 #include "cli/out_folder.h"
@@ -24,8 +25,9 @@ int Run(const ClosedLoopCommand& command) {
   if (!command.published_predictions.empty()) {
     published.predictions = CsvTable::Read(command.published_predictions, {kVoxelsColumn});
   }
-  if (!command.published_loops.empty())
+  if (!command.published_loops.empty()) {
     published.loops = CsvTable::Read(command.published_loops, {kVoxelsColumn});
+  }
   const DataPaths paths = FindDataPaths();
   const Problem problem = LoadProblem("hsr_walkway", {}, paths);
   const std::string out = MakeOutFolder(command.out);

@@ -14,6 +14,7 @@
 #include "bench/reproduce/open_loop_statistics.h"
 #include "bench/reproduce/open_loop_statistics_text.h"
 #include "bench/reproduce/open_loop_study.h"
+#include "bench/reproduce/published_columns.h"
 #include "bench/reproduce/published_table.h"
 #include "bench/result_file.h"
 #include "cli/data_paths.h"
@@ -97,8 +98,9 @@ int Run(const std::string& name, const OpenLoopCommand& command) {
       MakeStudyOptions(command, static_cast<int>(experiment.pairs.size()));
   // Read before the long work, so that a wrong path is found at once.
   std::optional<CsvTable> published_table;
-  if (!command.published.empty())
-    published_table = CsvTable::Read(command.published, {"pair", "speed_m_per_s"});
+  if (!command.published.empty()) {
+    published_table = CsvTable::Read(command.published, {kPairColumn, kSpeedColumn});
+  }
   const std::string out = MakeOutFolder(command.out.empty() ? "out/" + name : command.out);
 
   const OpenLoopStudy study =

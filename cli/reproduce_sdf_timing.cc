@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "bench/reproduce/published_columns.h"
 #include "bench/reproduce/sdf_timing.h"
 #include "bench/result_file.h"
 #include "cli/number_range.h"

@@ -80,9 +80,8 @@ PlanResult GpPlanner::Solve(const PlanRequest& request, const Trajectory& guess,
 
   GpProblem problem(robot(), request, guess, options);
   int iterations = 0;
-  const int max_iterations = stages == Stages::kTrial
-                                 ? std::min(kTrialIterations, settings_.max_iterations)
-                                 : settings_.max_iterations;
+  const int max_iterations =
+      to_beat ? std::min(kTrialIterations, settings_.max_iterations) : settings_.max_iterations;
   const auto solve = [&](double function_tolerance) {
     const SolveOutcome outcome =
         SolveByLevenbergMarquardt(problem.problem(), max_iterations, function_tolerance);
@@ -129,7 +128,7 @@ PlanResult GpPlanner::DoPlan(const PlanRequest& request) const {
   }
   int iterations = best.iterations;
   const auto attempt = [&](const Trajectory& guess) {
-    PlanResult other = Solve(request, guess, Stages::kTrial, &best.clearance);
+    PlanResult other = Solve(request, guess, Stages::kBoth, &best.clearance);
     iterations += other.iterations;
     if (IsBetter(other, best)) best = std::move(other);
   };

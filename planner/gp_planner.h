@@ -30,10 +30,10 @@ class GpPlanner final : public Planner {
   PlanResult DoPlan(const PlanRequest& request) const override;
   enum class Stages {
     kWithLimits,  ///< for a warm start
-    kBoth,        ///< for a cold one
-    kTrial        ///< both, but few iterations: for one of many seeds
+    kBoth         ///< for a cold one
   };
-  /// Gives up after the first stage if that touches something and is not safer than `to_beat`.
+  /// With `to_beat` it is a trial, for one of many seeds: few iterations, and it gives up after the
+  /// first stage if that touches something and is not safer.
   PlanResult Solve(const PlanRequest& request, const Trajectory& guess, Stages stages,
                    const Clearance* to_beat = nullptr) const;
   bool IsWithinLimits(const PlanResult& plan) const;  // those that count by the settings

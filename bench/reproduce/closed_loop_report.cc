@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bench/report/html_page.h"
+#include "bench/reproduce/published_columns.h"
 #include "bench/statistics.h"
 
 namespace sidestep {

@@ -6,9 +6,6 @@
 
 namespace sidestep {
 
-/// What the published tables of times are sorted by.
-inline constexpr const char* kVoxelsColumn = "voxels_per_side";
-
 /// A table of numbers with a header, as the published results come. Fields may be empty.
 class CsvTable {
  public:

@@ -7,6 +7,8 @@ namespace sidestep {
 /// How the published files name their columns: the pair, the speed, and then PREFIX + CASE.
 inline constexpr const char* kPairColumn = "pair";
 inline constexpr const char* kSpeedColumn = "speed_m_per_s";
+/// What the published tables of times go by.
+inline constexpr const char* kVoxelsColumn = "voxels_per_side";
 inline constexpr const char* kCollidingPrefix = "n_colliding_states_";
 inline constexpr const char* kGpCostPrefix = "gp_cost_";
 inline constexpr const char* kObstacleCostPrefix = "obstacle_cost_";

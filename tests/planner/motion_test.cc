@@ -99,12 +99,16 @@ TEST(Detour, IsDecidedByItsStreamAlone) {
   EXPECT_NE(motion.q, MakeDetour(Request(), other).q);
 }
 
+// The planar arm stays stretched along x.
+Trajectory Rest() {
+  return {Eigen::VectorXd::Zero(1), Eigen::MatrixXd::Zero(2, 1), Eigen::MatrixXd::Zero(2, 1)};
+}
+
 TEST(Clearance, IsThatOfTheNearestSphereAtTheNearestTime) {
   const RobotModel arm = MakePlanarArm();
   // The arm stays stretched along x; the ball passes 0.3 m beyond its tip at t = 1.
   const BallField field({1.3, -1, 0}, {0, 1, 0}, 0.1);
-  const Trajectory rest{Eigen::VectorXd::Zero(1), Eigen::MatrixXd::Zero(2, 1),
-                        Eigen::MatrixXd::Zero(2, 1)};
+  const Trajectory rest = Rest();
   const EpisodeTime start(0);
   const auto least_m = [&](double from_s, double to_s) {
     return MeasureClearance(arm, field, rest, start, EpisodeTime(from_s), EpisodeTime(to_s))
@@ -120,8 +124,7 @@ TEST(Clearance, NamesTheFirstMomentAtWhichSomethingTouches) {
   const RobotModel arm = MakePlanarArm();
   // The ball passes through the tip at t = 1, and touches it first 0.14 s earlier.
   const BallField field({1, -1, 0}, {0, 1, 0}, 0.1);
-  const Trajectory rest{Eigen::VectorXd::Zero(1), Eigen::MatrixXd::Zero(2, 1),
-                        Eigen::MatrixXd::Zero(2, 1)};
+  const Trajectory rest = Rest();
   const EpisodeTime start(0);
   const Clearance touching = MeasureClearance(arm, field, rest, start, start, EpisodeTime(2));
   ASSERT_TRUE(touching.first_contact);
@@ -146,8 +149,7 @@ TEST(IsSafer, PrefersWhatIsFreeThenWhatIsFreeForLongerThenWhatKeepsMoreDistance)
 TEST(Clearance, LeavesMountSpheresOut) {
   const RobotModel arm = MakePlanarArm();
   const BallField at_base({0, 0, 0}, {0, 0, 0}, 0.05);
-  const Trajectory rest{Eigen::VectorXd::Zero(1), Eigen::MatrixXd::Zero(2, 1),
-                        Eigen::MatrixXd::Zero(2, 1)};
+  const Trajectory rest = Rest();
   const EpisodeTime t(0);
   EXPECT_NEAR(MeasureClearance(arm, at_base, rest, t, t, t).least_m, 0.2 - 0.05 - 0.05, 1e-12);
 }
