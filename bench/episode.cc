@@ -1,4 +1,4 @@
-#include "bench/episode.h"
+#include "sidestep/bench/episode.h"
 
 #include <algorithm>
 #include <chrono>
@@ -7,15 +7,15 @@
 #include <deque>
 #include <iterator>
 
-#include "bench/metrics/motion_metrics.h"
-#include "bench/metrics/registry.h"
-#include "bench/planner_settings.h"
-#include "core/cpu_time.h"
-#include "planner/registry.h"
-#include "planner/replanner.h"
-#include "sdf/world_model.h"
+#include "sidestep/bench/metrics/motion_metrics.h"
+#include "sidestep/bench/metrics/registry.h"
+#include "sidestep/bench/planner_settings.h"
+#include "sidestep/core/cpu_time.h"
+#include "sidestep/planner/registry.h"
+#include "sidestep/planner/replanner.h"
+#include "sidestep/sdf/world_model.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 constexpr double kAfterGoal = 0.5;     // s of episode after the goal is reached
@@ -36,16 +36,16 @@ void AppendChanges(const std::vector<std::uint8_t>& before, const std::vector<st
   }
 }
 
-Recording BeginRecording(const Scenario& scenario, const RobotModel& robot,
-                         const EpisodeWorld& world) {
-  Recording recording;
+record::Recording BeginRecording(const scenarios::Scenario& scenario,
+                                 const robot::RobotModel& robot, const EpisodeWorld& world) {
+  record::Recording recording;
   recording.header = {{"scenario", scenario.name},       {"robot", robot.name()},
                       {"planner", scenario.planner},     {"knowledge", scenario.knowledge},
                       {"predictor", scenario.predictor}, {"seed", std::to_string(scenario.seed)}};
   for (const auto& [choice, chosen] : scenario.choices) {
     recording.header["choice." + choice] = chosen;
   }
-  recording.scenario_yaml = ToYaml(scenario);
+  recording.scenario_yaml = scenarios::ToYaml(scenario);
   recording.model_xml = world.model_xml;
   recording.joints = world.joints;
   recording.obstacles = world.obstacles;
@@ -61,13 +61,13 @@ Recording BeginRecording(const Scenario& scenario, const RobotModel& robot,
 // The loop's state: what has happened so far and what is due.
 class Loop {
  public:
-  Loop(const Scenario& scenario, const RobotModel& robot, EpisodeWorld& world,
+  Loop(const scenarios::Scenario& scenario, const robot::RobotModel& robot, EpisodeWorld& world,
        const FieldObserver& observe_field)
       : scenario_(scenario),
         world_(world),
         observe_field_(observe_field),
-        planner_(MakePlanner(scenario.planner, robot, MakePlannerSettings(scenario))),
-        model_(MakeWorldModel(MakeWorldModelOptions(
+        planner_(planner::MakePlanner(scenario.planner, robot, MakePlannerSettings(scenario))),
+        model_(sdf::MakeWorldModel(MakeWorldModelOptions(
             scenario, scenario.epsilon_m + robot.largest_sphere_radius_m(), world))),
         replanner_(*planner_, *model_, {scenario.horizon_s, scenario.step_s, scenario.q_goal}),
         end_s_(kHorizons * scenario.horizon_s) {
@@ -94,7 +94,7 @@ class Loop {
 
  private:
   struct Pending {
-    TimedPlan plan;
+    planner::TimedPlan plan;
     double effect_s;
   };
 
@@ -104,7 +104,7 @@ class Loop {
   void Advance(double t_s) {
     now_s_ = std::max(now_s_, t_s);
     world_.robot->AdvanceTo(EpisodeTime(t_s));
-    Recording& recording = result_.recording;
+    record::Recording& recording = result_.recording;
     for (ControlSample& tick : world_.robot->TakeControlLog()) {
       if (!reached_ && AtGoal(tick.q, tick.v, recording.q_goal)) {
         reached_ = true;
@@ -132,7 +132,7 @@ class Loop {
   }
 
   void KeepObservation(const Scan& scan) {
-    ObservationRecord& record = result_.recording.observations.emplace_back();
+    record::ObservationRecord& record = result_.recording.observations.emplace_back();
     record.t = scan.t;
     record.t_arrival = EpisodeTime(now_s_);
     const std::vector<std::uint8_t>& cells = model_->Occupancy().cells;
@@ -152,7 +152,7 @@ class Loop {
       next_cycle_s_ = ++cycle_index_ / scenario_.replan_rate_hz;
     }
     if (!has_scan_) return;  // nothing is known yet
-    Replanner::Cycle cycle =
+    planner::Replanner::Cycle cycle =
         replanner_.Run(EpisodeTime(t_s), world_.robot->Read(), HorizonOffset(latency_s));
     if (cycle.plan) pending_.push_back({*cycle.plan, t_s + latency_s});
     result_.recording.cycles.push_back(std::move(cycle.record));
@@ -161,8 +161,8 @@ class Loop {
     if (observe_field_) observe_field_(EpisodeTime(t_s), model_->MakeField(), world_.truth);
   }
 
-  void KeepTimes(const Replanner::Cycle& cycle) {
-    const WorldModelTimes map = model_->TakeTimes();
+  void KeepTimes(const planner::Replanner::Cycle& cycle) {
+    const sdf::WorldModelTimes map = model_->TakeTimes();
     const std::pair<const char*, double> stages[] = {
         {"sense", sense_s_},    {"map", map.map_s},         {"segment", map.segment_s},
         {"track", map.track_s}, {"predict", map.predict_s}, {"optimise", cycle.optimise_s},
@@ -177,7 +177,7 @@ class Loop {
   }
 
   EpisodeResult Finish() {
-    Recording& recording = result_.recording;
+    record::Recording& recording = result_.recording;
     for (const Metric& metric : Metrics()) {
       recording.metrics[metric.name] = metric.compute(recording);
     }
@@ -191,12 +191,12 @@ class Loop {
     return std::move(result_);
   }
 
-  const Scenario& scenario_;
+  const scenarios::Scenario& scenario_;
   EpisodeWorld& world_;
   const FieldObserver& observe_field_;
-  std::unique_ptr<Planner> planner_;
-  std::unique_ptr<WorldModel> model_;
-  Replanner replanner_;
+  std::unique_ptr<planner::Planner> planner_;
+  std::unique_ptr<sdf::WorldModel> model_;
+  planner::Replanner replanner_;
 
   std::deque<Pending> pending_;
   std::vector<std::uint8_t> last_cells_;  // filled by the latest scan
@@ -212,16 +212,16 @@ class Loop {
 
 }  // namespace
 
-WorldModelOptions MakeWorldModelOptions(const Scenario& scenario, double max_distance_m,
-                                        const EpisodeWorld& world) {
-  WorldModelOptions options;
-  options.knowledge = KnowledgeFromString(scenario.knowledge);
+sdf::WorldModelOptions MakeWorldModelOptions(const scenarios::Scenario& scenario,
+                                             double max_distance_m, const EpisodeWorld& world) {
+  sdf::WorldModelOptions options;
+  options.knowledge = sdf::KnowledgeFromString(scenario.knowledge);
   options.predictor = scenario.predictor;
   options.growth_sigmas = scenario.growth_sigmas;
   options.growth_limit_m = scenario.growth_limit_m;
   options.grid = scenario.grid;
   if (scenario.sensor.camera) {
-    options.unseen = UnseenSpaceFromString(scenario.sensor.camera->unseen);
+    options.unseen = sdf::UnseenSpaceFromString(scenario.sensor.camera->unseen);
   }
   options.max_distance_m = max_distance_m;
   if (world.truth != nullptr) {
@@ -244,7 +244,7 @@ std::string ToString(Outcome outcome) {
   return "";
 }
 
-EpisodeResult RunEpisode(const Scenario& scenario, const RobotModel& robot,
+EpisodeResult RunEpisode(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
                          const WorldFactory& make_world, const FieldObserver& observe_field) {
   const auto begin = std::chrono::steady_clock::now();
   EpisodeWorld world = make_world(scenario, robot);
@@ -253,4 +253,4 @@ EpisodeResult RunEpisode(const Scenario& scenario, const RobotModel& robot,
   return result;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -7,24 +7,24 @@
 #include <utility>
 #include <vector>
 
-#include "core/recording.h"
-#include "robot/robot_interface.h"
-#include "robot/robot_model.h"
-#include "robot/sensor.h"
-#include "robot/world_truth.h"
-#include "scenarios/scenario.h"
-#include "sdf/distance_field.h"
-#include "sdf/world_model.h"
+#include "sidestep/record/recording.h"
+#include "sidestep/robot/robot_interface.h"
+#include "sidestep/robot/robot_model.h"
+#include "sidestep/robot/sensor.h"
+#include "sidestep/robot/world_truth.h"
+#include "sidestep/scenarios/scenario.h"
+#include "sidestep/sdf/distance_field.h"
+#include "sidestep/sdf/world_model.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// A robot in its world, for one episode. The pointers live as long as `owner`.
 struct EpisodeWorld {
   std::shared_ptr<void> owner;
-  RobotInterface* robot = nullptr;
-  Sensor* sensor = nullptr;
-  WorldTruth* truth = nullptr;  ///< null on hardware: then nothing is judged by geometry
-  std::string model_xml;        ///< to draw it
+  robot::RobotInterface* robot = nullptr;
+  robot::Sensor* sensor = nullptr;
+  robot::WorldTruth* truth = nullptr;  ///< null on hardware: then nothing is judged by geometry
+  std::string model_xml;               ///< to draw it
   std::vector<std::string> joints, obstacles;
 };
 
@@ -44,17 +44,19 @@ EpisodeWorld MakeEpisodeWorld(std::shared_ptr<Source> source) {
 }
 
 /// Makes the world of a scenario; simulation and hardware each have one.
-using WorldFactory = std::function<EpisodeWorld(const Scenario&, const RobotModel&)>;
+using WorldFactory =
+    std::function<EpisodeWorld(const scenarios::Scenario&, const robot::RobotModel&)>;
 
 /// How the scenario's model of the world is made, fed from `world`, which must outlive it. Its
 /// fields tell distances up to `max_distance_m`.
-WorldModelOptions MakeWorldModelOptions(const Scenario& scenario, double max_distance_m,
-                                        const EpisodeWorld& world);
+sdf::WorldModelOptions MakeWorldModelOptions(const scenarios::Scenario& scenario,
+                                             double max_distance_m, const EpisodeWorld& world);
 
 /// Is shown the field of each planning cycle as the planner saw it, made at time `t`, and the
 /// truth, which is null on hardware. Only wall-clock figures may depend on it.
-using FieldObserver = std::function<void(EpisodeTime t, std::shared_ptr<const DistanceField> field,
-                                         const WorldTruth* truth)>;
+using FieldObserver =
+    std::function<void(EpisodeTime t, std::shared_ptr<const sdf::DistanceField> field,
+                       const robot::WorldTruth* truth)>;
 
 enum class Outcome {
   kGoal,          ///< reached the goal and touched nothing
@@ -70,7 +72,7 @@ using StageTimes = std::map<std::string, std::vector<double>>;
 
 struct EpisodeResult {
   Outcome outcome = Outcome::kTimeout;
-  Recording recording;  ///< its metrics are filled
+  record::Recording recording;  ///< its metrics are filled
   StageTimes times;
   double wall_s = 0;  ///< of the whole episode
 };
@@ -81,7 +83,7 @@ struct EpisodeResult {
 /// scenario.latency_s of episode time; the next one begins at the first multiple after that.
 /// @param scenario with its task resolved (bench/resolve.h).
 /// @throws std::invalid_argument for words of the scenario that no module knows.
-EpisodeResult RunEpisode(const Scenario& scenario, const RobotModel& robot,
+EpisodeResult RunEpisode(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
                          const WorldFactory& make_world, const FieldObserver& observe_field = {});
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,4 +1,4 @@
-#include "bench/field_audit.h"
+#include "sidestep/bench/field_audit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bench/statistics.h"
-#include "core/shape.h"
+#include "sidestep/bench/statistics.h"
+#include "sidestep/core/shape.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 constexpr double kNearCells = 1.75;
@@ -24,8 +24,9 @@ double AngleDeg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 }  // namespace
 
-TrueWorld::TrueWorld(const Scenario& scenario, const std::vector<ObjectObservation>& obstacles) {
-  for (const StaticBox& box : scenario.static_boxes) {
+TrueWorld::TrueWorld(const scenarios::Scenario& scenario,
+                     const std::vector<ObjectObservation>& obstacles) {
+  for (const scenarios::StaticBox& box : scenario.static_boxes) {
     solids_.push_back({Box{box.size_m}, box.X_WO.Inverse()});
   }
   for (const ObjectObservation& obstacle : obstacles) {
@@ -67,7 +68,8 @@ std::string ToString(AuditZone zone) {
   return "";
 }
 
-FieldAudit::FieldAudit(const Scenario& scenario, std::vector<double> ahead_s, int num_points)
+FieldAudit::FieldAudit(const scenarios::Scenario& scenario, std::vector<double> ahead_s,
+                       int num_points)
     : scenario_(scenario), ahead_s_(std::move(ahead_s)), p_WQ_(3, num_points) {
   const GridSpec& grid = scenario_.grid;
   CheckGridSpec(grid);
@@ -94,10 +96,11 @@ AuditZone FieldAudit::ZoneOf(double truth_m, double clamp_m) const {
   return truth_m <= clamp_m ? AuditZone::kEdge : AuditZone::kBeyond;
 }
 
-void FieldAudit::Look(EpisodeTime t, const DistanceField& field, const WorldTruth& truth) {
+void FieldAudit::Look(EpisodeTime t, const sdf::DistanceField& field,
+                      const robot::WorldTruth& truth) {
   const double clamp_m = field.max_distance_m();
   const double worst_before_m = worst_error_m_;
-  DistanceSamples samples;
+  sdf::DistanceSamples samples;
   for (std::size_t n = 0; n < ahead_s_.size(); ++n) {
     const EpisodeTime asked = t + HorizonOffset(ahead_s_[n]);
     const TrueWorld world(scenario_, truth.ObstaclesAt(asked));
@@ -138,16 +141,16 @@ std::vector<AuditRow> FieldAudit::Rows() const {
   return rows;
 }
 
-AuditGrids FieldAudit::GridsAt(EpisodeTime t, const DistanceField& field,
-                               const WorldTruth& truth) const {
+AuditGrids FieldAudit::GridsAt(EpisodeTime t, const sdf::DistanceField& field,
+                               const robot::WorldTruth& truth) const {
   const GridSpec& grid = scenario_.grid;
   const TrueWorld world(scenario_, truth.ObstaclesAt(t));
   const double clamp_m = field.max_distance_m();
-  AlignedVector<float> field_m, truth_m;
+  sdf::AlignedVector<float> field_m, truth_m;
   field_m.reserve(grid.num_cells());
   truth_m.reserve(grid.num_cells());
   Eigen::Matrix3Xd p_WQ(3, grid.size[0]);  // a row at a time
-  DistanceSamples samples;
+  sdf::DistanceSamples samples;
   for (int k = 0; k < grid.size[2]; ++k) {
     for (int j = 0; j < grid.size[1]; ++j) {
       for (int i = 0; i < grid.size[0]; ++i) p_WQ.col(i) = grid.Center(i, j, k);
@@ -158,7 +161,7 @@ AuditGrids FieldAudit::GridsAt(EpisodeTime t, const DistanceField& field,
       }
     }
   }
-  return {SdfGrid(grid, std::move(field_m)), SdfGrid(grid, std::move(truth_m))};
+  return {sdf::SdfGrid(grid, std::move(field_m)), sdf::SdfGrid(grid, std::move(truth_m))};
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -6,20 +6,20 @@
 #include <string>
 #include <vector>
 
-#include "core/grid.h"
-#include "core/observations.h"
-#include "core/time.h"
-#include "robot/world_truth.h"
-#include "scenarios/scenario.h"
-#include "sdf/distance_field.h"
-#include "sdf/map/sdf_grid.h"
+#include "sidestep/core/grid.h"
+#include "sidestep/core/observations.h"
+#include "sidestep/core/time.h"
+#include "sidestep/robot/world_truth.h"
+#include "sidestep/scenarios/scenario.h"
+#include "sidestep/sdf/distance_field.h"
+#include "sidestep/sdf/map/sdf_grid.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// The solids of a scenario at one moment, by their closed forms.
 class TrueWorld {
  public:
-  TrueWorld(const Scenario& scenario, const std::vector<ObjectObservation>& obstacles);
+  TrueWorld(const scenarios::Scenario& scenario, const std::vector<ObjectObservation>& obstacles);
 
   /// The exact distance to the nearest surface [m]; negative inside a solid. Where solids overlap,
   /// the depth in the deeper one.
@@ -68,7 +68,7 @@ struct AuditPlace {
 
 /// A field and the truth at the centres of a scenario's cells.
 struct AuditGrids {
-  SdfGrid field_W, truth_W;
+  sdf::SdfGrid field_W, truth_W;
 };
 
 /// Compares fields with the true geometry along an episode, at the same points of the grid each
@@ -76,11 +76,11 @@ struct AuditGrids {
 class FieldAudit {
  public:
   /// @param ahead_s which times are asked about, after each cycle; each >= 0.
-  FieldAudit(const Scenario& scenario, std::vector<double> ahead_s, int num_points);
+  FieldAudit(const scenarios::Scenario& scenario, std::vector<double> ahead_s, int num_points);
 
   /// Compares the field of one planning cycle. Neither is asked anything afterwards: fields of full
   /// knowledge end with their world.
-  void Look(EpisodeTime t, const DistanceField& field, const WorldTruth& truth);
+  void Look(EpisodeTime t, const sdf::DistanceField& field, const robot::WorldTruth& truth);
 
   /// One row a time and a zone that had points.
   std::vector<AuditRow> Rows() const;
@@ -96,9 +96,10 @@ class FieldAudit {
   };
 
   AuditZone ZoneOf(double truth_m, double clamp_m) const;
-  AuditGrids GridsAt(EpisodeTime t, const DistanceField& field, const WorldTruth& truth) const;
+  AuditGrids GridsAt(EpisodeTime t, const sdf::DistanceField& field,
+                     const robot::WorldTruth& truth) const;
 
-  Scenario scenario_;
+  scenarios::Scenario scenario_;
   std::vector<double> ahead_s_;
   Eigen::Matrix3Xd p_WQ_;
   std::map<std::pair<std::size_t, AuditZone>, Errors> errors_;  // by time ahead and zone
@@ -107,4 +108,4 @@ class FieldAudit {
   std::optional<AuditGrids> worst_grids_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

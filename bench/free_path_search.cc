@@ -1,44 +1,44 @@
-#include "bench/free_path_search.h"
+#include "sidestep/bench/free_path_search.h"
 
 #include <cmath>
 #include <limits>
 #include <vector>
 
-#include "bench/planner_settings.h"
-#include "core/random.h"
-#include "core/shape.h"
-#include "planner/clearance.h"
-#include "planner/first_guess.h"
-#include "planner/registry.h"
-#include "sdf/distance_field.h"
+#include "sidestep/bench/planner_settings.h"
+#include "sidestep/core/random.h"
+#include "sidestep/core/shape.h"
+#include "sidestep/planner/clearance.h"
+#include "sidestep/planner/first_guess.h"
+#include "sidestep/planner/registry.h"
+#include "sidestep/sdf/distance_field.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 constexpr double kJudgeStep_s = 0.005, kAfterGoal_s = 0.5;
 constexpr double kGradientStep_m = 1e-4;
 
 // The distance to the true shapes, where they truly will be.
-class TrueField final : public DistanceField {
+class TrueField final : public sdf::DistanceField {
  public:
-  TrueField(const Scenario& scenario, double max_distance_m)
+  TrueField(const scenarios::Scenario& scenario, double max_distance_m)
       : scenario_(scenario), max_distance_m_(max_distance_m) {
-    for (const StaticBox& box : scenario.static_boxes) {
+    for (const scenarios::StaticBox& box : scenario.static_boxes) {
       still_.push_back({box.X_WO.Inverse(), Box{box.size_m}});
     }
   }
 
-  DistanceSample Sample(const Eigen::Vector3d& p_WQ, EpisodeTime t) const override {
+  sdf::DistanceSample Sample(const Eigen::Vector3d& p_WQ, EpisodeTime t) const override {
     return SampleAmong(p_WQ, MovingAt(t));
   }
   void SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime t,
-                  DistanceSamples& samples) const override {
+                  sdf::DistanceSamples& samples) const override {
     const std::vector<Placed> moving = MovingAt(t);
     samples.distance_m.resize(p_WQ.cols());
     samples.gradient_W.resize(3, p_WQ.cols());
     samples.num_outside = 0;
     for (Eigen::Index s = 0; s < p_WQ.cols(); ++s) {
-      const DistanceSample sample = SampleAmong(p_WQ.col(s), moving);
+      const sdf::DistanceSample sample = SampleAmong(p_WQ.col(s), moving);
       samples.distance_m(s) = sample.distance_m;
       samples.gradient_W.col(s) = sample.gradient_W;
     }
@@ -56,14 +56,15 @@ class TrueField final : public DistanceField {
 
   std::vector<Placed> MovingAt(EpisodeTime t) const {
     std::vector<Placed> moving;
-    for (const MovingObstacle& obstacle : scenario_.moving_obstacles) {
+    for (const scenarios::MovingObstacle& obstacle : scenario_.moving_obstacles) {
       moving.push_back({PoseAt(obstacle, t).Inverse(), obstacle.shape});
     }
     return moving;
   }
 
-  DistanceSample SampleAmong(const Eigen::Vector3d& p_WQ, const std::vector<Placed>& moving) const {
-    DistanceSample sample{max_distance_m_, Eigen::Vector3d::Zero(), true};
+  sdf::DistanceSample SampleAmong(const Eigen::Vector3d& p_WQ,
+                                  const std::vector<Placed>& moving) const {
+    sdf::DistanceSample sample{max_distance_m_, Eigen::Vector3d::Zero(), true};
     const Placed* nearest = nullptr;
     for (const std::vector<Placed>* group : {&still_, &moving}) {
       for (const Placed& placed : *group) {
@@ -83,18 +84,18 @@ class TrueField final : public DistanceField {
     return sample;
   }
 
-  const Scenario& scenario_;
+  const scenarios::Scenario& scenario_;
   double max_distance_m_;
   std::vector<Placed> still_;
 };
 
 }  // namespace
 
-FreePath SearchFreePath(const Scenario& scenario, const RobotModel& robot, int max_guesses,
-                        std::uint64_t seed) {
+FreePath SearchFreePath(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
+                        int max_guesses, std::uint64_t seed) {
   const TrueField field(scenario, scenario.epsilon_m + robot.largest_sphere_radius_m());
-  const auto planner = MakePlanner(scenario.planner, robot, MakePlannerSettings(scenario));
-  PlanRequest request;
+  const auto planner = planner::MakePlanner(scenario.planner, robot, MakePlannerSettings(scenario));
+  planner::PlanRequest request;
   request.field = &field;
   request.step_s = scenario.step_s;
   request.num_states = static_cast<int>(std::lround(scenario.horizon_s / scenario.step_s)) + 1;
@@ -109,13 +110,14 @@ FreePath SearchFreePath(const Scenario& scenario, const RobotModel& robot, int m
   while (best.guesses < max_guesses && !best.found) {
     if (best.guesses > 0) {
       request.initial.reset();
-      request.initial = MakeDetour(request, random);
+      request.initial = planner::MakeDetour(request, random);
     }
     ++best.guesses;
-    const PlanResult plan = planner->Plan(request);
+    const planner::PlanResult plan = planner->Plan(request);
     const EpisodeTime begin(0), end(plan.trajectory.t_s(request.num_states - 1) + kAfterGoal_s);
     const double clearance_m =
-        MeasureClearance(robot, field, plan.trajectory, begin, begin, end, kJudgeStep_s).least_m;
+        planner::MeasureClearance(robot, field, plan.trajectory, begin, begin, end, kJudgeStep_s)
+            .least_m;
     if (clearance_m <= best.clearance_m) continue;
     best.clearance_m = clearance_m;
     best.trajectory = plan.trajectory;
@@ -124,4 +126,4 @@ FreePath SearchFreePath(const Scenario& scenario, const RobotModel& robot, int m
   return best;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

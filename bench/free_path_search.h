@@ -2,11 +2,11 @@
 
 #include <cstdint>
 
-#include "core/trajectory.h"
-#include "robot/robot_model.h"
-#include "scenarios/scenario.h"
+#include "sidestep/core/trajectory.h"
+#include "sidestep/robot/robot_model.h"
+#include "sidestep/scenarios/scenario.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 struct FreePath {
   bool found = false;
@@ -23,7 +23,7 @@ struct FreePath {
 /// robot rests for the scenario's latency first, as it does in an episode. It proves that a free
 /// motion exists; not finding one proves nothing.
 /// @param scenario with its task resolved (bench/resolve.h).
-FreePath SearchFreePath(const Scenario& scenario, const RobotModel& robot, int max_guesses,
-                        std::uint64_t seed);
+FreePath SearchFreePath(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
+                        int max_guesses, std::uint64_t seed);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,9 +1,9 @@
-#include "bench/planner_settings.h"
+#include "sidestep/bench/planner_settings.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
-PlannerSettings MakePlannerSettings(const Scenario& scenario) {
-  PlannerSettings settings;
+planner::PlannerSettings MakePlannerSettings(const scenarios::Scenario& scenario) {
+  planner::PlannerSettings settings;
   settings.epsilon_m = scenario.epsilon_m;
   settings.sigma_obs = scenario.sigma_obs;
   settings.num_interpolated = scenario.num_interpolated;
@@ -17,4 +17,4 @@ PlannerSettings MakePlannerSettings(const Scenario& scenario) {
   return settings;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

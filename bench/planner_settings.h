@@ -1,11 +1,11 @@
 #pragma once
 
-#include "planner/planner_settings.h"
-#include "scenarios/scenario.h"
+#include "sidestep/planner/planner_settings.h"
+#include "sidestep/scenarios/scenario.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// What a scenario says of its planner.
-PlannerSettings MakePlannerSettings(const Scenario& scenario);
+planner::PlannerSettings MakePlannerSettings(const scenarios::Scenario& scenario);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,18 +1,18 @@
-#include "bench/resolve.h"
+#include "sidestep/bench/resolve.h"
 
 #include <algorithm>
 #include <cstdio>
 
-#include "core/input_error.h"
-#include "core/shape.h"
-#include "planner/self_clearance.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/core/shape.h"
+#include "sidestep/planner/self_clearance.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 class TaskChecker {
  public:
-  TaskChecker(const Scenario& scenario, const RobotModel& robot)
+  TaskChecker(const scenarios::Scenario& scenario, const robot::RobotModel& robot)
       : scenario_(scenario), robot_(robot) {}
 
   Eigen::VectorXd LookUp(const std::string& key, const std::string& name,
@@ -38,7 +38,7 @@ class TaskChecker {
 
   void CheckLimits(const std::string& key, const Eigen::VectorXd& q) const {
     for (int i = 0; i < robot_.num_joints(); ++i) {
-      const JointLimits& limits = robot_.limits()[static_cast<std::size_t>(i)];
+      const robot::JointLimits& limits = robot_.limits()[static_cast<std::size_t>(i)];
       if (q(i) < limits.q_min || q(i) > limits.q_max) {
         char text[160];
         std::snprintf(text, sizeof text, "%s = %.4f rad is outside its limits [%.4f, %.4f]",
@@ -50,10 +50,10 @@ class TaskChecker {
   }
 
   void CheckSelf(const std::string& key, const Eigen::VectorXd& q) const {
-    const SelfClearance links(robot_);
+    const planner::SelfClearance links(robot_);
     const Eigen::Matrix3Xd p_WS = robot_.ComputeSphereCenters(q, false).p_WS;
     for (int pair = 0; pair < links.num_pairs(); ++pair) {
-      const LinkGap gap = links.Find(pair, p_WS);
+      const planner::LinkGap gap = links.Find(pair, p_WS);
       if (gap.gap_m >= 0) continue;
       char text[160];
       std::snprintf(text, sizeof text, "the robot's spheres %d and %d overlap by %.1f mm",
@@ -64,7 +64,7 @@ class TaskChecker {
 
   void CheckClear(const std::string& key, const Eigen::VectorXd& q, const std::string& object,
                   const Shape& shape, const Pose& X_WO) const {
-    const SphereCenters spheres = robot_.ComputeSphereCenters(q, false);
+    const robot::SphereCenters spheres = robot_.ComputeSphereCenters(q, false);
     const Pose X_OW = X_WO.Inverse();
     for (int s = 0; s < robot_.num_spheres(); ++s) {
       const bool mounted =
@@ -83,16 +83,16 @@ class TaskChecker {
 
  private:
   [[noreturn]] void Fail(const std::string& key, const std::string& why) const {
-    throw WrongValue(scenario_, key, why);
+    throw scenarios::WrongValue(scenario_, key, why);
   }
 
-  const Scenario& scenario_;
-  const RobotModel& robot_;
+  const scenarios::Scenario& scenario_;
+  const robot::RobotModel& robot_;
 };
 
 }  // namespace
 
-void ResolveTask(Scenario& scenario, const RobotModel& robot) {
+void ResolveTask(scenarios::Scenario& scenario, const robot::RobotModel& robot) {
   const TaskChecker check(scenario, robot);
   scenario.q_start = check.LookUp("task.start", scenario.start_name, scenario.q_start);
   scenario.q_goal = check.LookUp("task.goal", scenario.goal_name, scenario.q_goal);
@@ -100,14 +100,14 @@ void ResolveTask(Scenario& scenario, const RobotModel& robot) {
   check.CheckLimits("task.goal", scenario.q_goal);
   check.CheckSelf("task.start", scenario.q_start);
   check.CheckSelf("task.goal", scenario.q_goal);
-  for (const StaticBox& box : scenario.static_boxes) {
+  for (const scenarios::StaticBox& box : scenario.static_boxes) {
     check.CheckClear("task.start", scenario.q_start, box.name, Box{box.size_m}, box.X_WO);
     check.CheckClear("task.goal", scenario.q_goal, box.name, Box{box.size_m}, box.X_WO);
   }
-  for (const MovingObstacle& obstacle : scenario.moving_obstacles) {
+  for (const scenarios::MovingObstacle& obstacle : scenario.moving_obstacles) {
     check.CheckClear("task.start", scenario.q_start, obstacle.name, obstacle.shape,
                      PoseAt(obstacle, EpisodeTime(0)));
   }
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

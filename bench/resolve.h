@@ -1,15 +1,15 @@
 #pragma once
 
-#include "robot/robot_model.h"
-#include "scenarios/scenario.h"
+#include "sidestep/robot/robot_model.h"
+#include "sidestep/scenarios/scenario.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// Looks up the scenario's start and goal in the robot's configurations and judges them: known, of
 /// the right length, within the joint limits, and clear of every static box and of the moving
 /// obstacles as they stand at t = 0 (start only). Mount spheres are not judged against the mount.
 /// Clearance is exact: spheres against the true shapes.
 /// @throws InputError naming the scenario's file, line and key.
-void ResolveTask(Scenario& scenario, const RobotModel& robot);
+void ResolveTask(scenarios::Scenario& scenario, const robot::RobotModel& robot);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,4 +1,4 @@
-#include "bench/result_file.h"
+#include "sidestep/bench/result_file.h"
 
 #include <cmath>
 #include <cstdio>
@@ -7,11 +7,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "bench/metrics/registry.h"
-#include "bench/statistics.h"
-#include "core/input_error.h"
+#include "sidestep/bench/metrics/registry.h"
+#include "sidestep/bench/statistics.h"
+#include "sidestep/core/input_error.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -35,7 +35,7 @@ Json StageTable(const StageTimes& times) {
 
 }  // namespace
 
-std::string ResultJson(const EpisodeResult& result, const Scenario& scenario,
+std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& scenario,
                        const std::map<std::string, std::string>& versions) {
   Json json;
   json["format"] = "sidestep-result-1";
@@ -51,7 +51,7 @@ std::string ResultJson(const EpisodeResult& result, const Scenario& scenario,
       {"latency_s", scenario.latency_s},          {"replan_rate_hz", scenario.replan_rate_hz},
       {"sensor_rate_hz", scenario.sensor.rate_hz}};
   Json speeds = Json::object();
-  for (const MovingObstacle& obstacle : scenario.moving_obstacles) {
+  for (const scenarios::MovingObstacle& obstacle : scenario.moving_obstacles) {
     speeds[obstacle.name] =
         std::visit([](const auto& motion) { return motion.speed_m_s; }, obstacle.motion);
   }
@@ -102,4 +102,4 @@ void WriteTextFile(const std::string& path, const std::string& text) {
   }
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

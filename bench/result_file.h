@@ -3,14 +3,14 @@
 #include <map>
 #include <string>
 
-#include "bench/episode.h"
+#include "sidestep/bench/episode.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// The text of result.json: outcome, metrics, scenario, versions; and, under "wall_clock" alone,
 /// everything that may differ between equal runs. Numbers that do not apply are null.
 /// @param versions of the code and libraries, of the machine's C library variant, ...
-std::string ResultJson(const EpisodeResult& result, const Scenario& scenario,
+std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& scenario,
                        const std::map<std::string, std::string>& versions);
 
 /// What a comparison table needs of a result.json.
@@ -27,4 +27,4 @@ ResultSummary ReadResult(const std::string& path);
 /// @throws InputError if it cannot be written.
 void WriteTextFile(const std::string& path, const std::string& text);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

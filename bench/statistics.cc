@@ -1,10 +1,10 @@
-#include "bench/statistics.h"
+#include "sidestep/bench/statistics.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace sidestep {
+namespace sidestep::bench {
 
 double Quantile(std::vector<double> values, double p) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
@@ -15,4 +15,4 @@ double Quantile(std::vector<double> values, double p) {
   return values[below] + (rank - std::floor(rank)) * (values[above] - values[below]);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,4 +1,4 @@
-#include "bench/study.h"
+#include "sidestep/bench/study.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,13 +8,13 @@
 #include <random>
 #include <stdexcept>
 
-#include "bench/free_path_search.h"
-#include "bench/metrics/registry.h"
+#include "sidestep/bench/free_path_search.h"
+#include "sidestep/bench/metrics/registry.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
-void CheckFinite(const Recording& recording) {
+void CheckFinite(const record::Recording& recording) {
   for (const ControlSample& tick : recording.control) {
     if (!tick.q.allFinite() || !tick.v.allFinite() || !tick.q_command.allFinite() ||
         !tick.torque.allFinite()) {
@@ -67,7 +67,7 @@ StudyRow MakeRow(const std::map<std::string, std::string>& factors,
 
 }  // namespace
 
-StudyRow RunStudyEpisode(const Scenario& scenario, const RobotModel& robot,
+StudyRow RunStudyEpisode(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
                          const WorldFactory& make_world,
                          const std::map<std::string, std::string>& factors) {
   return MakeRow(factors, [&](StudyRow& row) {
@@ -78,8 +78,8 @@ StudyRow RunStudyEpisode(const Scenario& scenario, const RobotModel& robot,
   });
 }
 
-StudyRow RunStudySearch(const Scenario& scenario, const RobotModel& robot, int max_guesses,
-                        const std::map<std::string, std::string>& factors) {
+StudyRow RunStudySearch(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
+                        int max_guesses, const std::map<std::string, std::string>& factors) {
   return MakeRow(factors, [&](StudyRow& row) {
     const FreePath path = SearchFreePath(scenario, robot, max_guesses, scenario.seed);
     row.outcome = ToString(path.found ? Outcome::kGoal : Outcome::kCollision);
@@ -87,11 +87,11 @@ StudyRow RunStudySearch(const Scenario& scenario, const RobotModel& robot, int m
   });
 }
 
-void VaryObstacles(Scenario& scenario, std::uint64_t seed) {
+void VaryObstacles(scenarios::Scenario& scenario, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   const double speed_factor = std::uniform_real_distribution<double>(0.75, 1.3)(generator);
   const double delay_s = std::uniform_real_distribution<double>(0, 0.5)(generator);
-  for (MovingObstacle& obstacle : scenario.moving_obstacles) {
+  for (scenarios::MovingObstacle& obstacle : scenario.moving_obstacles) {
     std::visit(
         [&](auto& motion) {
           motion.speed_m_s *= speed_factor;
@@ -155,4 +155,4 @@ std::string OutcomeTable(const std::vector<StudyRow>& rows, const std::string& d
   return text + "\n";
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "bench/episode.h"
-#include "robot/robot_model.h"
-#include "scenarios/scenario.h"
+#include "sidestep/bench/episode.h"
+#include "sidestep/robot/robot_model.h"
+#include "sidestep/scenarios/scenario.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// One episode of a study: what was varied, and what came of it.
 struct StudyRow {
@@ -20,18 +20,18 @@ struct StudyRow {
 };
 
 /// Runs an episode. One that throws, or in which a number is not finite, is a row too: it failed.
-StudyRow RunStudyEpisode(const Scenario& scenario, const RobotModel& robot,
+StudyRow RunStudyEpisode(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
                          const WorldFactory& make_world,
                          const std::map<std::string, std::string>& factors);
 
 /// Looks for a free motion (bench/free_path_search.h) instead; its outcome is that of an episode:
 /// goal, or collision if none was found. Its one metric is min_clearance_m.
-StudyRow RunStudySearch(const Scenario& scenario, const RobotModel& robot, int max_guesses,
-                        const std::map<std::string, std::string>& factors);
+StudyRow RunStudySearch(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
+                        int max_guesses, const std::map<std::string, std::string>& factors);
 
 /// Makes all moving obstacles faster or slower by one factor from 0.75 to 1.3 and lets them all
 /// begin later by up to 0.5 s: what a seed changes of an episode besides random walks.
-void VaryObstacles(Scenario& scenario, std::uint64_t seed);
+void VaryObstacles(scenarios::Scenario& scenario, std::uint64_t seed);
 
 /// All rows, with a column for each factor and each metric.
 std::string StudyCsv(const std::vector<StudyRow>& rows);
@@ -42,4 +42,4 @@ std::string StudyCsv(const std::vector<StudyRow>& rows);
 std::string OutcomeTable(const std::vector<StudyRow>& rows, const std::string& down,
                          const std::string& across);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

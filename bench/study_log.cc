@@ -1,4 +1,4 @@
-#include "bench/study_log.h"
+#include "sidestep/bench/study_log.h"
 
 #include <cmath>
 #include <filesystem>
@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "core/input_error.h"
+#include "sidestep/core/input_error.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 using nlohmann::json;
@@ -81,4 +81,4 @@ void StudyLog::Append(const StudyRow& row) {
   if (!file_) throw InputError(path_, "cannot be written");
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -4,9 +4,9 @@
 #include <map>
 #include <string>
 
-#include "bench/study.h"
+#include "sidestep/bench/study.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// The rows of a study in the order in which they are finished, so that nothing is lost when it is
 /// interrupted: a file of one JSON object a line, the first of which says what the study is.
@@ -32,4 +32,4 @@ class StudyLog {
   std::ofstream file_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -7,20 +7,20 @@
 #include <string>
 #include <vector>
 
-#include "bench/episode.h"
-#include "bench/field_audit.h"
-#include "bench/result_file.h"
-#include "cli/command.h"
-#include "cli/heat_slice.h"
-#include "cli/number_range.h"
-#include "cli/wiring.h"
-#include "core/input_error.h"
-#include "render/font.h"
-#include "render/gl_context.h"
-#include "render/video_writer.h"
-#include "sdf/map/nrrd_file.h"
+#include "sidestep/bench/episode.h"
+#include "sidestep/bench/field_audit.h"
+#include "sidestep/bench/result_file.h"
+#include "sidestep/cli/command.h"
+#include "sidestep/cli/heat_slice.h"
+#include "sidestep/cli/number_range.h"
+#include "sidestep/cli/wiring.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/render/font.h"
+#include "sidestep/render/gl_context.h"
+#include "sidestep/render/video_writer.h"
+#include "sidestep/sdf/map/nrrd_file.h"
 
-namespace sidestep {
+namespace sidestep::cli {
 namespace {
 
 struct AuditOptions {
@@ -32,26 +32,26 @@ struct AuditOptions {
   bool json = false;
 };
 
-OccupancyGrid TrueOccupancy(const SdfGrid& truth_W) {
+OccupancyGrid TrueOccupancy(const sdf::SdfGrid& truth_W) {
   OccupancyGrid occupancy(truth_W.spec());
   std::transform(truth_W.distance_m().begin(), truth_W.distance_m().end(), occupancy.cells.begin(),
                  [](float distance_m) { return distance_m < 0 ? 1 : 0; });
   return occupancy;
 }
 
-SdfGrid Difference(const AuditGrids& grids) {
-  AlignedVector<float> difference_m = grids.field_W.distance_m();
+sdf::SdfGrid Difference(const bench::AuditGrids& grids) {
+  sdf::AlignedVector<float> difference_m = grids.field_W.distance_m();
   for (std::size_t n = 0; n < difference_m.size(); ++n) {
     difference_m[n] -= grids.truth_W.distance_m()[n];
   }
-  return SdfGrid(grids.field_W.spec(), std::move(difference_m));
+  return sdf::SdfGrid(grids.field_W.spec(), std::move(difference_m));
 }
 
-void PrintRows(const std::vector<AuditRow>& rows) {
+void PrintRows(const std::vector<bench::AuditRow>& rows) {
   std::printf(
       "                         error, mm                  gradient off by, degrees\n"
       "ahead s  zone      points  median     p99     max    median    p99    max\n");
-  for (const AuditRow& row : rows) {
+  for (const bench::AuditRow& row : rows) {
     std::printf("%7.2f  %-7s %8zu %7.2f %7.2f %7.2f", row.ahead_s, ToString(row.zone).c_str(),
                 row.num_points, 1e3 * row.median_m, 1e3 * row.p99_m, 1e3 * row.max_m);
     if (!std::isnan(row.gradient_median_deg)) {
@@ -63,7 +63,8 @@ void PrintRows(const std::vector<AuditRow>& rows) {
 }
 
 // What the picture shows, in two lines.
-std::vector<std::string> PictureTitle(const Scenario& scenario, const AuditPlace& worst) {
+std::vector<std::string> PictureTitle(const scenarios::Scenario& scenario,
+                                      const bench::AuditPlace& worst) {
   char what[128], when[128];
   std::snprintf(what, sizeof(what), ": |field - truth| at z = %.2f m", worst.p_W.z());
   std::snprintf(when, sizeof(when), "; made at %.2f s, asked about %.2f s", worst.t_cycle.seconds(),
@@ -71,9 +72,9 @@ std::vector<std::string> PictureTitle(const Scenario& scenario, const AuditPlace
   return {scenario.name + what, "knowledge: " + scenario.knowledge + when};
 }
 
-std::string Json(const std::vector<AuditRow>& rows, const AuditPlace& worst) {
+std::string Json(const std::vector<bench::AuditRow>& rows, const bench::AuditPlace& worst) {
   nlohmann::ordered_json json;
-  for (const AuditRow& row : rows) {
+  for (const bench::AuditRow& row : rows) {
     nlohmann::ordered_json entry = {{"ahead_s", row.ahead_s},   {"zone", ToString(row.zone)},
                                     {"points", row.num_points}, {"median_m", row.median_m},
                                     {"p99_m", row.p99_m},       {"max_m", row.max_m}};
@@ -103,31 +104,32 @@ int Audit(const AuditOptions& options) {
     throw InputError("--out", "'" + out + "' cannot be made a folder");
   }
 
-  FieldAudit audit(problem.scenario, options.ahead_s, options.num_points);
+  bench::FieldAudit audit(problem.scenario, options.ahead_s, options.num_points);
   int num_cycles = 0;
-  RunEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths),
-             [&](EpisodeTime t, const std::shared_ptr<const DistanceField>& field,
-                 const WorldTruth* truth) {
-               audit.Look(t, *field, *truth);
-               ++num_cycles;
-             });
+  bench::RunEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths),
+                    [&](EpisodeTime t, const std::shared_ptr<const sdf::DistanceField>& field,
+                        const robot::WorldTruth* truth) {
+                      audit.Look(t, *field, *truth);
+                      ++num_cycles;
+                    });
   if (num_cycles == 0) {
     std::fprintf(stderr, "audit: the episode had no planning cycle\n");
     return 1;
   }
 
-  const std::vector<AuditRow> rows = audit.Rows();
-  const AuditPlace& worst = audit.worst();
-  const AuditGrids& grids = audit.worst_grids();
-  const GlContext gl;  // has the letters
-  WritePng(DrawHeatSlice(grids, worst.p_W, PictureTitle(problem.scenario, worst), Font(gl)),
-           out + "/slice.png");
-  WriteNrrd(grids.field_W, out + "/field.nrrd");
-  WriteNrrd(grids.truth_W, out + "/truth.nrrd");
-  WriteNrrd(Difference(grids), out + "/difference.nrrd");
-  WriteNrrd(TrueOccupancy(grids.truth_W), out + "/occupancy.nrrd");
+  const std::vector<bench::AuditRow> rows = audit.Rows();
+  const bench::AuditPlace& worst = audit.worst();
+  const bench::AuditGrids& grids = audit.worst_grids();
+  const render::GlContext gl;  // has the letters
+  render::WritePng(
+      DrawHeatSlice(grids, worst.p_W, PictureTitle(problem.scenario, worst), render::Font(gl)),
+      out + "/slice.png");
+  sdf::WriteNrrd(grids.field_W, out + "/field.nrrd");
+  sdf::WriteNrrd(grids.truth_W, out + "/truth.nrrd");
+  sdf::WriteNrrd(Difference(grids), out + "/difference.nrrd");
+  sdf::WriteNrrd(TrueOccupancy(grids.truth_W), out + "/occupancy.nrrd");
   const std::string json = Json(rows, worst);
-  WriteTextFile(out + "/audit.json", json);
+  bench::WriteTextFile(out + "/audit.json", json);
   if (options.json) {
     std::fputs(json.c_str(), stdout);
     return 0;
@@ -186,4 +188,4 @@ void AddAuditCommand(CommandLine& line) {
   audit->callback([&line, options] { line.exit_code = Audit(*options); });
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

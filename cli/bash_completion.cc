@@ -1,10 +1,10 @@
-#include "cli/bash_completion.h"
+#include "sidestep/cli/bash_completion.h"
 
 #include <array>
 
-#include "cli/command_tree.h"
+#include "sidestep/cli/command_tree.h"
 
-namespace sidestep {
+namespace sidestep::cli {
 namespace {
 
 // Words for which `sidestep list KIND` knows the values.
@@ -103,4 +103,4 @@ std::string BashCompletion(const CLI::App& program) {
          name + " " + name + "\n";
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

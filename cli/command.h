@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace sidestep {
+namespace sidestep::cli {
 
 /// What every sub-command shares with main().
 struct CommandLine {
@@ -23,4 +23,4 @@ void AddDoctorCommand(CommandLine& line);
 void AddFieldCommand(CommandLine& line);
 void AddManualCommand(CommandLine& line);
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace sidestep {
+namespace sidestep::cli {
 
 /// The commands of a program or a command, in the order of --help; hidden ones (of no group) are
 /// left out.
@@ -23,4 +23,4 @@ inline std::vector<std::string> Flags(const CLI::Option& option) {
 /// Whether a word must follow the option.
 inline bool TakesValue(const CLI::Option& option) { return option.get_items_expected_min() > 0; }
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

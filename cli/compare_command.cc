@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "bench/result_file.h"
-#include "cli/command.h"
+#include "sidestep/bench/result_file.h"
+#include "sidestep/cli/command.h"
 
-namespace sidestep {
+namespace sidestep::cli {
 namespace {
 
-std::string Number(const ResultSummary& result, const char* metric, double scale,
+std::string Number(const bench::ResultSummary& result, const char* metric, double scale,
                    const char* format) {
   const double value = result.metrics.at(metric);
   if (std::isnan(value)) return "-";
@@ -20,7 +20,7 @@ std::string Number(const ResultSummary& result, const char* metric, double scale
 }
 
 // What happened, in words that need no glossary.
-std::string Verdict(const ResultSummary& result) {
+std::string Verdict(const bench::ResultSummary& result) {
   if (result.outcome == "goal") return "reached the goal, touched nothing";
   if (result.outcome == "collision") return "TOUCHED something";
   if (result.outcome == "timeout") return "did not reach the goal in time";
@@ -28,13 +28,14 @@ std::string Verdict(const ResultSummary& result) {
 }
 
 int Compare(const std::vector<std::string>& folders) {
-  std::vector<ResultSummary> results;
-  for (const std::string& folder : folders) results.push_back(ReadResult(folder + "/result.json"));
+  std::vector<bench::ResultSummary> results;
+  for (const std::string& folder : folders)
+    results.push_back(bench::ReadResult(folder + "/result.json"));
   std::printf("%-20s %-34s %10s %10s %10s %8s %10s %9s\n", "planner knows", "what happened",
               "contact", "clearance", "goal", "GP cost", "jerk RMS", "cycle");
   std::printf("%-20s %-34s %10s %10s %10s %8s %10s %9s\n", "", "", "at [s]", "least [mm]",
               "after [s]", "", "[rad/s^3]", "[ms CPU]");
-  for (const ResultSummary& result : results) {
+  for (const bench::ResultSummary& result : results) {
     std::printf("%-20s %-34s %10s %10s %10s %8s %10s %9.1f\n", result.knowledge.c_str(),
                 Verdict(result).c_str(), Number(result, "first_contact_s", 1, "%.2f").c_str(),
                 Number(result, "min_clearance_m", 1e3, "%.0f").c_str(),
@@ -55,4 +56,4 @@ void AddCompareCommand(CommandLine& line) {
   compare->callback([&line, folders] { line.exit_code = Compare(*folders); });
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

@@ -1,12 +1,12 @@
-#include "cli/data_paths.h"
+#include "sidestep/cli/data_paths.h"
 
 #include <cstdlib>
 #include <filesystem>
 
-#include "core/input_error.h"
-#include "scenarios/scenario.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/scenarios/scenario.h"
 
-namespace sidestep {
+namespace sidestep::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -45,11 +45,11 @@ std::string FindScenario(const std::string& scenario, const DataPaths& paths) {
   std::error_code error;
   if (fs::exists(file, error)) return file.string();
   std::string list;
-  for (const std::string& name : ScenarioNames(paths.scenarios)) {
+  for (const std::string& name : scenarios::ScenarioNames(paths.scenarios)) {
     list += (list.empty() ? "" : ", ") + name;
   }
   throw InputError("SCENARIO", "'" + scenario + "' is no scenario (known: " + list +
                                    "; a path needs a / or ends in .yaml)");
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace sidestep {
+namespace sidestep::cli {
 
 /// The folders of robots and scenarios.
 struct DataPaths {
@@ -19,4 +19,4 @@ DataPaths FindDataPaths();
 /// the shipped scenario of that name. @throws InputError for an unknown name, listing the known.
 std::string FindScenario(const std::string& scenario, const DataPaths& paths);
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

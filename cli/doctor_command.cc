@@ -4,16 +4,16 @@
 #include <string>
 #include <thread>
 
-#include "bench/report/gnuplot.h"
-#include "cli/command.h"
-#include "cli/data_paths.h"
-#include "cli/versions.h"
-#include "render/gl_context.h"
-#include "render/video_writer.h"
-#include "robot/robot_model.h"
-#include "scenarios/scenario.h"
+#include "sidestep/bench/report/gnuplot.h"
+#include "sidestep/cli/command.h"
+#include "sidestep/cli/data_paths.h"
+#include "sidestep/cli/versions.h"
+#include "sidestep/render/gl_context.h"
+#include "sidestep/render/video_writer.h"
+#include "sidestep/robot/robot_model.h"
+#include "sidestep/scenarios/scenario.h"
 
-namespace sidestep {
+namespace sidestep::cli {
 namespace {
 
 // Prints one finding a line; a remedy belongs on the same line, so that it can be grepped.
@@ -41,10 +41,11 @@ void CheckData(Report& report) {
   try {
     const DataPaths paths = FindDataPaths();
     std::size_t num_scenarios = 0;
-    for (const std::string& name : ScenarioNames(paths.scenarios)) {
-      const Scenario scenario = LoadScenario(paths.scenarios + "/" + name + ".yaml");
+    for (const std::string& name : scenarios::ScenarioNames(paths.scenarios)) {
+      const scenarios::Scenario scenario =
+          scenarios::LoadScenario(paths.scenarios + "/" + name + ".yaml");
       if (!scenario.robot.empty()) {
-        RobotModel::Load(paths.models, scenario.robot, scenario.X_WB);
+        robot::RobotModel::Load(paths.models, scenario.robot, scenario.X_WB);
       }
       ++num_scenarios;
     }
@@ -60,7 +61,7 @@ void CheckGl(Report& report) {
   const std::string detail =
       "MUJOCO_GL=" + std::string(choice == nullptr ? "(not set: osmesa)" : choice);
   try {
-    const GlContext gl;
+    const render::GlContext gl;
     report.Good("rendering", gl.renderer() + ", OpenGL " + gl.version() + ", " + detail);
   } catch (const std::exception& error) {
     report.Bad("rendering", error.what(),
@@ -69,7 +70,7 @@ void CheckGl(Report& report) {
 }
 
 void CheckVideo(Report& report) {
-  const std::string encoder = VideoEncoder();
+  const std::string encoder = render::VideoEncoder();
   if (encoder.empty()) {
     report.Bad("video", "libavcodec has no H.264 encoder", "install Debian's libavcodec59");
   } else {
@@ -78,9 +79,9 @@ void CheckVideo(Report& report) {
 }
 
 void CheckGnuplot(Report& report) {
-  const std::string version = GnuplotVersion();
+  const std::string version = bench::GnuplotVersion();
   if (version.empty()) {
-    report.Absent("figures", "no gnuplot: sidestep reproduce draws none", kGnuplotRemedy);
+    report.Absent("figures", "no gnuplot: sidestep reproduce draws none", bench::kGnuplotRemedy);
   } else {
     report.Good("figures", version);
   }
@@ -105,4 +106,4 @@ void AddDoctorCommand(CommandLine& line) {
   doctor->callback([&line] { line.exit_code = Diagnose(); });
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

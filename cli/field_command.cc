@@ -6,15 +6,15 @@
 #include <utility>
 #include <vector>
 
-#include "cli/command.h"
-#include "cli/number_range.h"
-#include "cli/wiring.h"
-#include "core/input_error.h"
-#include "render/image.h"
-#include "render/video_writer.h"
-#include "sdf/world_model.h"
+#include "sidestep/cli/command.h"
+#include "sidestep/cli/number_range.h"
+#include "sidestep/cli/wiring.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/render/image.h"
+#include "sidestep/render/video_writer.h"
+#include "sidestep/sdf/world_model.h"
 
-namespace sidestep {
+namespace sidestep::cli {
 namespace {
 
 struct FieldOptions {
@@ -28,17 +28,17 @@ struct FieldOptions {
 // What a model of the world believes at a time, having seen everything until then, while the robot
 // rests. The world is kept, because beliefs under full knowledge ask it.
 struct Belief {
-  EpisodeWorld world;
-  std::unique_ptr<WorldModel> model;
+  bench::EpisodeWorld world;
+  std::unique_ptr<sdf::WorldModel> model;
   EpisodeTime t;
-  std::shared_ptr<const DistanceField> field;
+  std::shared_ptr<const sdf::DistanceField> field;
 };
 
 Belief Watch(Scene scene, const FieldOptions& options) {
   Belief belief;
   belief.world = std::move(scene.world);
-  belief.model =
-      MakeWorldModel(MakeWorldModelOptions(scene.scenario, options.reach_m, belief.world));
+  belief.model = sdf::MakeWorldModel(
+      bench::MakeWorldModelOptions(scene.scenario, options.reach_m, belief.world));
   bool has_seen = false;
   while (belief.world.sensor->NextDue().seconds() <= options.time_s) {
     belief.world.robot->AdvanceTo(belief.world.sensor->NextDue());
@@ -54,7 +54,7 @@ Belief Watch(Scene scene, const FieldOptions& options) {
 }
 
 // Solids are dark, near is warm, far is pale.
-Color ColorOf(double distance_m, double reach_m) {
+render::Color ColorOf(double distance_m, double reach_m) {
   if (distance_m <= 0) return {110, 30, 30};
   const double far = std::min(1.0, distance_m / reach_m);
   const auto mix = [far](double near_value, double far_value) {
@@ -65,7 +65,7 @@ Color ColorOf(double distance_m, double reach_m) {
 
 // One level slice: the field at a time, a thin line for each tenth of a metre, and in black what is
 // truly solid then of everything that moves. y points up, x to the right.
-Image Slice(const Belief& belief, const GridSpec& grid, EpisodeTime t, double height_m) {
+render::Image Slice(const Belief& belief, const GridSpec& grid, EpisodeTime t, double height_m) {
   constexpr int kPixelsPerCell = 3;
   const double pixel_m = grid.cell_m / kPixelsPerCell;
   const int width = grid.size[0] * kPixelsPerCell, height = grid.size[1] * kPixelsPerCell;
@@ -83,7 +83,7 @@ Image Slice(const Belief& belief, const GridSpec& grid, EpisodeTime t, double he
   const auto distance_at = [&](int x, int y) {
     return belief.field->Sample(point(x, y), t).distance_m;
   };
-  Image image(width, height);
+  render::Image image(width, height);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const double d = distance_at(x, y);
@@ -108,17 +108,17 @@ int DrawField(FieldOptions options) {
   const GridSpec grid = scene.scenario.grid;
   const Belief belief = Watch(std::move(scene), options);
   constexpr int kGap = 6;
-  std::vector<Image> slices;
+  std::vector<render::Image> slices;
   for (const double ahead_s : options.ahead_s) {
     slices.push_back(Slice(belief, grid, belief.t + HorizonOffset(ahead_s), options.height_m));
   }
   const int width = slices.front().width() + kGap;
-  Image image(width * static_cast<int>(slices.size()) - kGap, slices.front().height());
+  render::Image image(width * static_cast<int>(slices.size()) - kGap, slices.front().height());
   image.Fill({0, 0, image.width(), image.height()}, {255, 255, 255});
   for (std::size_t i = 0; i < slices.size(); ++i) {
     image.Paste(slices[i], width * static_cast<int>(i), 0);
   }
-  WritePng(image, options.out);
+  render::WritePng(image, options.out);
   std::printf("written  %s\n", options.out.c_str());
   return 0;
 }
@@ -154,4 +154,4 @@ void AddFieldCommand(CommandLine& line) {
   field->callback([&line, options] { line.exit_code = DrawField(*options); });
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

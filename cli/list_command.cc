@@ -4,25 +4,26 @@
 #include <string>
 #include <vector>
 
-#include "bench/metrics/registry.h"
-#include "cli/command.h"
-#include "cli/data_paths.h"
-#include "core/input_error.h"
-#include "planner/registry.h"
-#include "robot/robot_model.h"
-#include "scenarios/scenario.h"
-#include "sdf/prediction/registry.h"
-#include "sdf/world_model.h"
-#include "sim/sensors.h"
+#include "sidestep/bench/metrics/registry.h"
+#include "sidestep/cli/command.h"
+#include "sidestep/cli/data_paths.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/planner/registry.h"
+#include "sidestep/robot/robot_model.h"
+#include "sidestep/scenarios/scenario.h"
+#include "sidestep/sdf/prediction/registry.h"
+#include "sidestep/sdf/world_model.h"
+#include "sidestep/sim/sensors.h"
 
-namespace sidestep {
+namespace sidestep::cli {
 namespace {
 
 // Those that have a robot, or those that have none.
 std::vector<std::string> NamesOfScenarios(const DataPaths& paths, bool with_robot) {
   std::vector<std::string> names;
-  for (const std::string& name : ScenarioNames(paths.scenarios)) {
-    const Scenario scenario = LoadScenario(paths.scenarios + "/" + name + ".yaml");
+  for (const std::string& name : scenarios::ScenarioNames(paths.scenarios)) {
+    const scenarios::Scenario scenario =
+        scenarios::LoadScenario(paths.scenarios + "/" + name + ".yaml");
     if (scenario.robot.empty() != with_robot) names.push_back(name);
   }
   return names;
@@ -35,22 +36,22 @@ struct Kind {
 
 std::vector<std::string> KnowledgeNames(const DataPaths&) {
   std::vector<std::string> names;
-  for (const Knowledge knowledge : kAllKnowledge) names.push_back(ToString(knowledge));
+  for (const sdf::Knowledge knowledge : sdf::kAllKnowledge) names.push_back(ToString(knowledge));
   return names;
 }
 
 const Kind kKinds[] = {
     {"scenarios", [](const DataPaths& paths) { return NamesOfScenarios(paths, true); }},
     {"field_scenes", [](const DataPaths& paths) { return NamesOfScenarios(paths, false); }},
-    {"robots", [](const DataPaths& paths) { return RobotModel::ListNames(paths.models); }},
+    {"robots", [](const DataPaths& paths) { return robot::RobotModel::ListNames(paths.models); }},
     {"knowledge", &KnowledgeNames},
-    {"planners", [](const DataPaths&) { return PlannerNames(); }},
-    {"predictors", [](const DataPaths&) { return PredictorNames(); }},
-    {"sensors", [](const DataPaths&) { return SensorNames(); }},
+    {"planners", [](const DataPaths&) { return planner::PlannerNames(); }},
+    {"predictors", [](const DataPaths&) { return sdf::PredictorNames(); }},
+    {"sensors", [](const DataPaths&) { return sim::SensorNames(); }},
     {"metrics",
      [](const DataPaths&) {
        std::vector<std::string> names;
-       for (const Metric& metric : Metrics()) names.emplace_back(metric.name);
+       for (const bench::Metric& metric : bench::Metrics()) names.emplace_back(metric.name);
        return names;
      }},
 };
@@ -58,7 +59,7 @@ const Kind kKinds[] = {
 // A line for each choice that a scenario leaves open.
 std::string ChoicesOf(const std::string& scenario_file) {
   std::string lines;
-  for (const auto& [choice, options] : ScenarioChoices(scenario_file)) {
+  for (const auto& [choice, options] : scenarios::ScenarioChoices(scenario_file)) {
     std::string list;
     for (const std::string& option : options) list += (list.empty() ? "" : "|") + option;
     lines += "\n    --set " + choice + "=" + list;
@@ -70,11 +71,11 @@ std::string ChoicesOf(const std::string& scenario_file) {
 int ListAll() {
   const DataPaths paths = FindDataPaths();
   std::map<std::string, std::string> notes;
-  for (const std::string& name : ScenarioNames(paths.scenarios)) {
+  for (const std::string& name : scenarios::ScenarioNames(paths.scenarios)) {
     const std::string file = paths.scenarios + "/" + name + ".yaml";
-    notes[name] = LoadScenario(file).description + ChoicesOf(file);
+    notes[name] = scenarios::LoadScenario(file).description + ChoicesOf(file);
   }
-  for (const Metric& metric : Metrics()) {
+  for (const bench::Metric& metric : bench::Metrics()) {
     notes[metric.name] = metric.meaning + std::string(" [") + metric.unit + "]";
   }
   for (const Kind& kind : kKinds) {
@@ -114,4 +115,4 @@ void AddListCommand(CommandLine& line) {
   list->callback([&line, kind] { line.exit_code = kind->empty() ? ListAll() : ListNames(*kind); });
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

@@ -2,10 +2,10 @@
 #include <exception>
 #include <string>
 
-#include "cli/command.h"
-#include "cli/command_tree.h"
-#include "cli/versions.h"
-#include "core/input_error.h"
+#include "sidestep/cli/command.h"
+#include "sidestep/cli/command_tree.h"
+#include "sidestep/cli/versions.h"
+#include "sidestep/core/input_error.h"
 
 namespace {
 
@@ -26,16 +26,16 @@ void CheckCommandName(const CLI::App& app, const std::string& name) {
   std::string known;
   const auto is_named = [&](const CLI::App* command) { return command->get_name() == name; };
   if (!app.get_subcommands(is_named).empty()) return;
-  for (const CLI::App* const command : sidestep::Commands(app)) {
+  for (const CLI::App* const command : sidestep::cli::Commands(app)) {
     known += (known.empty() ? "" : ", ") + command->get_name();
   }
   throw sidestep::InputError("sidestep", "no command '" + name + "' (there are: " + known + ")");
 }
 
 int Run(int argc, char** argv) {
-  sidestep::CommandLine line;
+  sidestep::cli::CommandLine line;
   line.app.name("sidestep");
-  line.app.set_version_flag("--version", sidestep::VersionText());
+  line.app.set_version_flag("--version", sidestep::cli::VersionText());
   line.app.require_subcommand(1);
   line.app.footer(
       "Exit codes: 0 done, whatever the outcome of the run; 1 a gate failed or a run could not be\n"
@@ -43,16 +43,16 @@ int Run(int argc, char** argv) {
       "Environment: SIDESTEP_DATA_DIR is a folder with models/ and scenarios/, used instead of "
       "the\n"
       "installed ones; MUJOCO_GL may only be osmesa, or not set.");
-  sidestep::AddRunCommand(line);
-  sidestep::AddCompareCommand(line);
-  sidestep::AddRenderCommand(line);
-  sidestep::AddReproduceCommand(line);
-  sidestep::AddStudyCommand(line);
-  sidestep::AddAuditCommand(line);
-  sidestep::AddListCommand(line);
-  sidestep::AddDoctorCommand(line);
-  sidestep::AddFieldCommand(line);
-  sidestep::AddManualCommand(line);
+  sidestep::cli::AddRunCommand(line);
+  sidestep::cli::AddCompareCommand(line);
+  sidestep::cli::AddRenderCommand(line);
+  sidestep::cli::AddReproduceCommand(line);
+  sidestep::cli::AddStudyCommand(line);
+  sidestep::cli::AddAuditCommand(line);
+  sidestep::cli::AddListCommand(line);
+  sidestep::cli::AddDoctorCommand(line);
+  sidestep::cli::AddFieldCommand(line);
+  sidestep::cli::AddManualCommand(line);
   if (argc > 1 && argv[1][0] != '-') CheckCommandName(line.app, argv[1]);
   try {
     line.app.parse(argc, argv);

@@ -1,11 +1,11 @@
-#include "cli/man_page.h"
+#include "sidestep/cli/man_page.h"
 
 #include <algorithm>
 #include <cctype>
 
-#include "cli/command_tree.h"
+#include "sidestep/cli/command_tree.h"
 
-namespace sidestep {
+namespace sidestep::cli {
 namespace {
 
 // Text as roff takes it literally.
@@ -122,4 +122,4 @@ std::map<std::string, std::string> ManPages(const CLI::App& program, const std::
   return pages;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

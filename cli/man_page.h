@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-namespace sidestep {
+namespace sidestep::cli {
 
 /// The manual of the whole command line: for the program and for each of its commands one page in
 /// roff, by file name (`sidestep.1`, `sidestep-run.1`, ...). A command of a command has a section
@@ -12,4 +12,4 @@ namespace sidestep {
 /// Hidden commands (of no group) are left out.
 std::map<std::string, std::string> ManPages(const CLI::App& program, const std::string& version);
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

@@ -1,14 +1,14 @@
 #include <filesystem>
 #include <memory>
 
-#include "bench/result_file.h"
-#include "cli/bash_completion.h"
-#include "cli/command.h"
-#include "cli/man_page.h"
-#include "cli/versions.h"
-#include "core/input_error.h"
+#include "sidestep/bench/result_file.h"
+#include "sidestep/cli/bash_completion.h"
+#include "sidestep/cli/command.h"
+#include "sidestep/cli/man_page.h"
+#include "sidestep/cli/versions.h"
+#include "sidestep/core/input_error.h"
 
-namespace sidestep {
+namespace sidestep::cli {
 namespace {
 
 int WriteManual(const CLI::App& program, const std::string& out) {
@@ -18,9 +18,9 @@ int WriteManual(const CLI::App& program, const std::string& out) {
     if (error) throw InputError("--out", "'" + out + "' cannot be made a folder");
   }
   for (const auto& [file, text] : ManPages(program, VersionNumber())) {
-    WriteTextFile(out + "/man1/" + file, text);
+    bench::WriteTextFile(out + "/man1/" + file, text);
   }
-  WriteTextFile(out + "/completions/" + program.get_name(), BashCompletion(program));
+  bench::WriteTextFile(out + "/completions/" + program.get_name(), BashCompletion(program));
   return 0;
 }
 
@@ -35,4 +35,4 @@ void AddManualCommand(CommandLine& line) {
   manual->callback([&line, out] { line.exit_code = WriteManual(line.app, *out); });
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

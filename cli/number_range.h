@@ -5,7 +5,7 @@
 #include <sstream>
 #include <string>
 
-namespace sidestep {
+namespace sidestep::cli {
 
 /// A check for options: a number from `least` to `most`, both included. CLI::Range takes NaN.
 inline CLI::Validator NumberFrom(double least, double most) {
@@ -22,4 +22,4 @@ inline CLI::Validator NumberFrom(double least, double most) {
   return CLI::Validator(check, "", "number");
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

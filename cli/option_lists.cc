@@ -1,4 +1,4 @@
-#include "cli/option_lists.h"
+#include "sidestep/cli/option_lists.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "core/input_error.h"
+#include "sidestep/core/input_error.h"
 
-namespace sidestep {
+namespace sidestep::cli {
 namespace {
 
 constexpr int kMaxSpeeds = 10000;
@@ -84,11 +84,11 @@ std::vector<int> ParseNumbers(const std::string& option, const std::string& text
   return numbers;
 }
 
-std::vector<Knowledge> ParseKnowledge(const std::string& option, const std::string& text) {
-  std::vector<Knowledge> kinds;
+std::vector<sdf::Knowledge> ParseKnowledge(const std::string& option, const std::string& text) {
+  std::vector<sdf::Knowledge> kinds;
   for (const std::string& word : Split(text, ',')) {
     try {
-      AddOnce(option, word, KnowledgeFromString(word), kinds);
+      AddOnce(option, word, sdf::KnowledgeFromString(word), kinds);
     } catch (const std::invalid_argument& error) {
       throw InputError(option, error.what());
     }
@@ -96,4 +96,4 @@ std::vector<Knowledge> ParseKnowledge(const std::string& option, const std::stri
   return kinds;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

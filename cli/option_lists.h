@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "sdf/world_model.h"
+#include "sidestep/sdf/world_model.h"
 
-namespace sidestep {
+namespace sidestep::cli {
 
 /// What people write after a flag, `option`, that takes several values at once. All throw
 /// InputError, naming the flag.
@@ -19,6 +19,6 @@ std::vector<double> ParseSpeeds(const std::string& option, const std::string& te
 std::vector<int> ParseNumbers(const std::string& option, const std::string& text, int most);
 
 /// Kinds of knowledge, comma-separated, none twice.
-std::vector<Knowledge> ParseKnowledge(const std::string& option, const std::string& text);
+std::vector<sdf::Knowledge> ParseKnowledge(const std::string& option, const std::string& text);
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

@@ -4,9 +4,9 @@
 #include <string>
 #include <system_error>
 
-#include "core/input_error.h"
+#include "sidestep/core/input_error.h"
 
-namespace sidestep {
+namespace sidestep::cli {
 
 /// The folder that --out names, made if it is not there. @throws InputError if it cannot be.
 inline std::string MakeOutFolder(const std::string& out) {
@@ -18,4 +18,4 @@ inline std::string MakeOutFolder(const std::string& out) {
   return out;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

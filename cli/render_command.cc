@@ -8,15 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "cli/command.h"
-#include "cli/number_range.h"
-#include "core/input_error.h"
-#include "core/recording.h"
-#include "render/comparison.h"
-#include "render/gl_context.h"
-#include "render/video.h"
+#include "sidestep/cli/command.h"
+#include "sidestep/cli/number_range.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/record/recording_file.h"
+#include "sidestep/render/comparison.h"
+#include "sidestep/render/gl_context.h"
+#include "sidestep/render/video.h"
 
-namespace sidestep {
+namespace sidestep::cli {
 namespace {
 
 struct RenderOptions {
@@ -44,7 +44,7 @@ class InterruptGuard {
   void (*previous_)(int);
 };
 
-void ParseSize(const std::string& text, PictureOptions* picture) {
+void ParseSize(const std::string& text, render::PictureOptions* picture) {
   int used = 0;
   const bool parsed =
       std::sscanf(text.c_str(), "%dx%d%n", &picture->width, &picture->height, &used) == 2 &&
@@ -71,9 +71,9 @@ bool ShowProgress(int done, int total) {
   return interrupted == 0;
 }
 
-std::vector<NamedRecording> ReadTraces(const std::vector<std::string>& paths) {
-  std::vector<NamedRecording> traces;
-  for (const std::string& path : paths) traces.push_back({path, ReadRecording(path)});
+std::vector<render::NamedRecording> ReadTraces(const std::vector<std::string>& paths) {
+  std::vector<render::NamedRecording> traces;
+  for (const std::string& path : paths) traces.push_back({path, record::ReadRecording(path)});
   return traces;
 }
 
@@ -82,26 +82,26 @@ int Render(const RenderOptions& options) {
     throw InputError("--out", "give --out FILE.mp4, --still FILE.png, or both");
   }
   if (options.at_s && options.still.empty()) throw InputError("--at", "needs --still");
-  PictureOptions picture;
+  render::PictureOptions picture;
   ParseSize(options.size, &picture);
   picture.camera = options.camera;
   picture.titles = options.titles;
   picture.playback_speed = options.playback_speed;
 
-  const std::vector<NamedRecording> traces = ReadTraces(options.traces);
-  const GlContext gl;
-  Comparison comparison(gl, traces, picture);
+  const std::vector<render::NamedRecording> traces = ReadTraces(options.traces);
+  const render::GlContext gl;
+  render::Comparison comparison(gl, traces, picture);
   if (!options.still.empty()) {
-    RenderStill(comparison, options.still,
-                options.at_s ? std::optional(EpisodeTime(*options.at_s)) : std::nullopt);
+    render::RenderStill(comparison, options.still,
+                        options.at_s ? std::optional(EpisodeTime(*options.at_s)) : std::nullopt);
     std::printf("written  %s\n", options.still.c_str());
   }
   if (options.video.empty()) return 0;
 
   const InterruptGuard guard;
   const auto begin = std::chrono::steady_clock::now();
-  const int frames = RenderVideo(comparison, options.video,
-                                 {options.frames_per_second, options.playback_speed}, ShowProgress);
+  const int frames = render::RenderVideo(
+      comparison, options.video, {options.frames_per_second, options.playback_speed}, ShowProgress);
   if (interrupted != 0) {
     std::fprintf(stderr, "\nstopped; %s was not written\n", options.video.c_str());
     return 1;
@@ -137,4 +137,4 @@ void AddRenderCommand(CommandLine& line) {
   render->callback([&line, options] { line.exit_code = Render(*options); });
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

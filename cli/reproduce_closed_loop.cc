@@ -2,54 +2,58 @@
 #include <memory>
 #include <string>
 
-#include "bench/reproduce/closed_loop.h"
-#include "bench/reproduce/closed_loop_report.h"
-#include "bench/reproduce/published_columns.h"
-#include "bench/result_file.h"
-#include "cli/number_range.h"
-#include "cli/out_folder.h"
-#include "cli/reproduce.h"
-#include "cli/versions.h"
-#include "cli/wiring.h"
+#include "sidestep/bench/reproduce/closed_loop.h"
+#include "sidestep/bench/reproduce/closed_loop_report.h"
+#include "sidestep/bench/reproduce/published_columns.h"
+#include "sidestep/bench/result_file.h"
+#include "sidestep/cli/number_range.h"
+#include "sidestep/cli/out_folder.h"
+#include "sidestep/cli/reproduce.h"
+#include "sidestep/cli/versions.h"
+#include "sidestep/cli/wiring.h"
+#include "sidestep/record/recording_file.h"
 
-namespace sidestep {
+namespace sidestep::cli {
 namespace {
 
 struct ClosedLoopCommand {
-  ClosedLoopOptions options;
+  bench::ClosedLoopOptions options;
   std::string published_predictions, published_loops, out = "out/closed_loop";
 };
 
 int Run(const ClosedLoopCommand& command) {
-  PublishedRates published;
+  bench::PublishedRates published;
   if (!command.published_predictions.empty()) {
-    published.predictions = CsvTable::Read(command.published_predictions, {kVoxelsColumn});
+    published.predictions =
+        bench::CsvTable::Read(command.published_predictions, {bench::kVoxelsColumn});
   }
   if (!command.published_loops.empty()) {
-    published.loops = CsvTable::Read(command.published_loops, {kVoxelsColumn});
+    published.loops = bench::CsvTable::Read(command.published_loops, {bench::kVoxelsColumn});
   }
   const DataPaths paths = FindDataPaths();
   const Problem problem = LoadProblem("hsr_walkway", {}, paths);
   const std::string out = MakeOutFolder(command.out);
 
-  ClosedLoopStudy study = RunClosedLoopStudy(
+  bench::ClosedLoopStudy study = bench::RunClosedLoopStudy(
       problem.scenario, problem.robot, SimulatedWorlds(paths), command.options,
       [](const std::string& part) { std::fprintf(stderr, "%s\n", part.c_str()); });
-  for (EpisodeResult* const result : {&study.update, &study.prediction}) {
+  for (bench::EpisodeResult* const result : {&study.update, &study.prediction}) {
     for (const auto& [part, version] : Versions()) {
       result->recording.header["version." + part] = version;
     }
-    WriteRecording(result->recording, out + "/" + result->recording.header.at("knowledge") + ".h5");
+    record::WriteRecording(result->recording,
+                           out + "/" + result->recording.header.at("knowledge") + ".h5");
   }
-  const CsvTable rates = MakeRatesTable(study, published);
-  WriteTextFile(out + "/rates.csv", rates.ToText());
-  WriteTextFile(out + "/whole_run.csv", MakeWholeRunTable(study.whole_run).ToText());
+  const bench::CsvTable rates = bench::MakeRatesTable(study, published);
+  bench::WriteTextFile(out + "/rates.csv", rates.ToText());
+  bench::WriteTextFile(out + "/whole_run.csv", bench::MakeWholeRunTable(study.whole_run).ToText());
   std::printf("%s\nwritten: %s/rates.csv, whole_run.csv, execute_and_update.h5, prediction.h5\n",
-              DescribeClosedLoop(study, published).c_str(), out.c_str());
-  const std::string joints = DrawInto(out, "joints", MakeJointsFigure(study));
-  const std::string rates_svg = DrawInto(out, "rates", MakeRatesFigure(rates));
-  WriteTextFile(out + "/index.html",
-                MakeClosedLoopPage(command.options, study, published, joints, rates_svg));
+              bench::DescribeClosedLoop(study, published).c_str(), out.c_str());
+  const std::string joints = DrawInto(out, "joints", bench::MakeJointsFigure(study));
+  const std::string rates_svg = DrawInto(out, "rates", bench::MakeRatesFigure(rates));
+  bench::WriteTextFile(
+      out + "/index.html",
+      bench::MakeClosedLoopPage(command.options, study, published, joints, rates_svg));
   std::printf("written: %s/index.html\n", out.c_str());
   return 0;
 }
@@ -75,4 +79,4 @@ void AddReproduceClosedLoop(CommandLine& line, CLI::App& reproduce) {
   command->callback([&line, options] { line.exit_code = Run(*options); });
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

@@ -1,18 +1,19 @@
 #include <cstdio>
 #include <string>
 
-#include "bench/report/gnuplot.h"
-#include "cli/command.h"
-#include "cli/reproduce.h"
-#include "core/input_error.h"
+#include "sidestep/bench/report/gnuplot.h"
+#include "sidestep/cli/command.h"
+#include "sidestep/cli/reproduce.h"
+#include "sidestep/core/input_error.h"
 
-namespace sidestep {
+namespace sidestep::cli {
 
-std::string DrawInto(const std::string& folder, const std::string& name, const Figure& figure) {
+std::string DrawInto(const std::string& folder, const std::string& name,
+                     const bench::Figure& figure) {
   const std::string stem = folder + "/" + name;
-  if (!DrawFigure(figure, stem)) {
+  if (!bench::DrawFigure(figure, stem)) {
     std::printf("not drawn: %s.svg, %s.png: gnuplot is missing or failed (%s)\n", stem.c_str(),
-                stem.c_str(), kGnuplotRemedy);
+                stem.c_str(), bench::kGnuplotRemedy);
     return "";
   }
   std::printf("written: %s.svg, %s.png\n", stem.c_str(), stem.c_str());
@@ -37,4 +38,4 @@ void AddReproduceCommand(CommandLine& line) {
   AddReproduceClosedLoop(line, *reproduce);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

@@ -9,23 +9,23 @@
 #include <thread>
 #include <vector>
 
-#include "bench/reproduce/open_loop_experiment.h"
-#include "bench/reproduce/open_loop_report.h"
-#include "bench/reproduce/open_loop_statistics.h"
-#include "bench/reproduce/open_loop_statistics_text.h"
-#include "bench/reproduce/open_loop_study.h"
-#include "bench/reproduce/published_columns.h"
-#include "bench/reproduce/published_table.h"
-#include "bench/result_file.h"
-#include "cli/data_paths.h"
-#include "cli/number_range.h"
-#include "cli/option_lists.h"
-#include "cli/out_folder.h"
-#include "cli/reproduce.h"
-#include "core/input_error.h"
-#include "sdf/prediction/registry.h"
+#include "sidestep/bench/reproduce/open_loop_experiment.h"
+#include "sidestep/bench/reproduce/open_loop_report.h"
+#include "sidestep/bench/reproduce/open_loop_statistics.h"
+#include "sidestep/bench/reproduce/open_loop_statistics_text.h"
+#include "sidestep/bench/reproduce/open_loop_study.h"
+#include "sidestep/bench/reproduce/published_columns.h"
+#include "sidestep/bench/reproduce/published_table.h"
+#include "sidestep/bench/result_file.h"
+#include "sidestep/cli/data_paths.h"
+#include "sidestep/cli/number_range.h"
+#include "sidestep/cli/option_lists.h"
+#include "sidestep/cli/out_folder.h"
+#include "sidestep/cli/reproduce.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/sdf/prediction/registry.h"
 
-namespace sidestep {
+namespace sidestep::cli {
 namespace {
 
 struct OpenLoopCommand {
@@ -37,8 +37,8 @@ struct OpenLoopCommand {
   std::string published, out;
 };
 
-OpenLoopExperiment MakeExperiment(const std::string& name, const OpenLoopCommand& command) {
-  OpenLoopExperiment experiment = MakeOpenLoopExperiment(name);
+bench::OpenLoopExperiment MakeExperiment(const std::string& name, const OpenLoopCommand& command) {
+  bench::OpenLoopExperiment experiment = bench::MakeOpenLoopExperiment(name);
   if (command.sigma_obs) experiment.sigma_obs = *command.sigma_obs;
   if (command.epsilon_m) experiment.epsilon_m = *command.epsilon_m;
   if (command.num_interpolated) experiment.num_interpolated = *command.num_interpolated;
@@ -46,13 +46,13 @@ OpenLoopExperiment MakeExperiment(const std::string& name, const OpenLoopCommand
   return experiment;
 }
 
-OpenLoopStudyOptions MakeStudyOptions(const OpenLoopCommand& command, int num_pairs) {
-  OpenLoopStudyOptions options;
+bench::OpenLoopStudyOptions MakeStudyOptions(const OpenLoopCommand& command, int num_pairs) {
+  bench::OpenLoopStudyOptions options;
   if (!command.cases.empty()) options.cases = ParseKnowledge("--case", command.cases);
   if (!command.pairs.empty()) options.pairs = ParseNumbers("--pairs", command.pairs, num_pairs);
   if (!command.predictor.empty()) {
     try {
-      MakePredictor(command.predictor);
+      sdf::MakePredictor(command.predictor);
     } catch (const std::invalid_argument& error) {
       throw InputError("--predictor", error.what());
     }
@@ -73,11 +73,11 @@ void ShowProgress(int done, int all) {
   }
 }
 
-void PrintVerdicts(const OpenLoopStudy& study) {
+void PrintVerdicts(const bench::OpenLoopStudy& study) {
   std::printf("%-20s %16s %16s %16s %14s\n", "planner knows", "collision-free", "truly free",
               "truly free", "mean GP cost");
   std::printf("%-20s %16s %16s %16s\n", "", "as published", "at the states", "all along");
-  for (const VerdictCounts& counts : CountVerdicts(study)) {
+  for (const bench::VerdictCounts& counts : bench::CountVerdicts(study)) {
     std::printf("%-20s %8d of %4d %16d %16d %14.4f\n", ToString(counts.knowledge).c_str(),
                 counts.free, counts.num_rows, counts.truly_free_states, counts.truly_free,
                 counts.mean_gp_cost);
@@ -93,51 +93,54 @@ void PrintVerdicts(const OpenLoopStudy& study) {
 }
 
 int Run(const std::string& name, const OpenLoopCommand& command) {
-  const OpenLoopExperiment experiment = MakeExperiment(name, command);
-  const OpenLoopStudyOptions options =
+  const bench::OpenLoopExperiment experiment = MakeExperiment(name, command);
+  const bench::OpenLoopStudyOptions options =
       MakeStudyOptions(command, static_cast<int>(experiment.pairs.size()));
   // Read before the long work, so that a wrong path is found at once.
-  std::optional<CsvTable> published_table;
+  std::optional<bench::CsvTable> published_table;
   if (!command.published.empty()) {
-    published_table = CsvTable::Read(command.published, {kPairColumn, kSpeedColumn});
+    published_table =
+        bench::CsvTable::Read(command.published, {bench::kPairColumn, bench::kSpeedColumn});
   }
   const std::string out = MakeOutFolder(command.out.empty() ? "out/" + name : command.out);
 
-  const OpenLoopStudy study =
-      RunOpenLoopStudy(experiment, FindDataPaths().models, options, ShowProgress);
-  const CsvTable table = MakeOpenLoopTable(study);
-  WriteTextFile(out + "/rows.csv", table.ToText());
-  const std::vector<MatchedOutcomes> outcomes = ReadOutcomes(table);
-  std::optional<PublishedComparison> published;
+  const bench::OpenLoopStudy study =
+      bench::RunOpenLoopStudy(experiment, FindDataPaths().models, options, ShowProgress);
+  const bench::CsvTable table = bench::MakeOpenLoopTable(study);
+  bench::WriteTextFile(out + "/rows.csv", table.ToText());
+  const std::vector<bench::MatchedOutcomes> outcomes = bench::ReadOutcomes(table);
+  std::optional<bench::PublishedComparison> published;
   if (published_table) {
-    published = {CompareTables(table, *published_table, command.published),
-                 ReadOutcomes(*published_table)};
+    published = {bench::CompareTables(table, *published_table, command.published),
+                 bench::ReadOutcomes(*published_table)};
   }
-  std::vector<OpenLoopStatistics> statistics;
-  for (const RowFilter filter : {RowFilter::kAllRows, RowFilter::kPublishedExclusions}) {
-    if (!CanFilter(outcomes, filter)) continue;
-    statistics.push_back(ComputeOpenLoopStatistics(outcomes, filter, experiment));
+  std::vector<bench::OpenLoopStatistics> statistics;
+  for (const bench::RowFilter filter :
+       {bench::RowFilter::kAllRows, bench::RowFilter::kPublishedExclusions}) {
+    if (!bench::CanFilter(outcomes, filter)) continue;
+    statistics.push_back(bench::ComputeOpenLoopStatistics(outcomes, filter, experiment));
   }
-  WriteTextFile(out + "/statistics.json", ToJson(statistics));
+  bench::WriteTextFile(out + "/statistics.json", bench::ToJson(statistics));
 
   PrintVerdicts(study);
-  for (const OpenLoopStatistics& filtered : statistics) {
-    std::printf("\n%s", Describe(filtered).c_str());
+  for (const bench::OpenLoopStatistics& filtered : statistics) {
+    std::printf("\n%s", bench::Describe(filtered).c_str());
   }
-  if (!CanFilter(outcomes, RowFilter::kPublishedExclusions)) {
+  if (!bench::CanFilter(outcomes, bench::RowFilter::kPublishedExclusions)) {
     std::printf(
         "\npublished_exclusions: left out, they need --case static,execute_and_update,"
         "full_knowledge\n");
   }
   if (published) {
-    std::printf("\nagainst %s: %s", command.published.c_str(), Describe(published->table).c_str());
+    std::printf("\nagainst %s: %s", command.published.c_str(),
+                bench::Describe(published->table).c_str());
   }
   std::printf("\nwritten: %s/rows.csv, %s/statistics.json\n", out.c_str(), out.c_str());
   const std::string svg = DrawInto(
       out, "figure",
-      MakeOpenLoopFigure(outcomes, published ? published->outcomes : decltype(outcomes)()));
-  WriteTextFile(out + "/index.html",
-                MakeOpenLoopPage(experiment, options, study, published, statistics, svg));
+      bench::MakeOpenLoopFigure(outcomes, published ? published->outcomes : decltype(outcomes)()));
+  bench::WriteTextFile(out + "/index.html", bench::MakeOpenLoopPage(experiment, options, study,
+                                                                    published, statistics, svg));
   std::printf("written: %s/index.html\n", out.c_str());
   return !published || published->table.AllCountsAgree() ? 0 : 1;
 }
@@ -145,7 +148,7 @@ int Run(const std::string& name, const OpenLoopCommand& command) {
 }  // namespace
 
 void AddReproduceOpenLoop(CommandLine& line, CLI::App& reproduce) {
-  for (const std::string& name : OpenLoopExperimentNames()) {
+  for (const std::string& name : bench::OpenLoopExperimentNames()) {
     auto options = std::make_shared<OpenLoopCommand>();
     options->num_jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     CLI::App* const command = reproduce.add_subcommand(
@@ -177,4 +180,4 @@ void AddReproduceOpenLoop(CommandLine& line, CLI::App& reproduce) {
   }
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

@@ -4,19 +4,19 @@
 #include <optional>
 #include <string>
 
-#include "bench/reproduce/published_columns.h"
-#include "bench/reproduce/sdf_timing.h"
-#include "bench/result_file.h"
-#include "cli/number_range.h"
-#include "cli/out_folder.h"
-#include "cli/reproduce.h"
-#include "core/input_error.h"
+#include "sidestep/bench/reproduce/published_columns.h"
+#include "sidestep/bench/reproduce/sdf_timing.h"
+#include "sidestep/bench/result_file.h"
+#include "sidestep/cli/number_range.h"
+#include "sidestep/cli/out_folder.h"
+#include "sidestep/cli/reproduce.h"
+#include "sidestep/core/input_error.h"
 
-namespace sidestep {
+namespace sidestep::cli {
 namespace {
 
 struct SdfTimingCommand {
-  SdfTimingOptions options;
+  bench::SdfTimingOptions options;
   std::string published, out = "out/sdf_timing";
 };
 
@@ -25,24 +25,28 @@ constexpr int kMostVoxels = 512;
 
 int Run(const SdfTimingCommand& command) {
   for (const std::string& scene : command.options.scenes) {
-    const std::vector<std::string> known = FieldSceneNames();
+    const std::vector<std::string> known = bench::FieldSceneNames();
     if (std::find(known.begin(), known.end(), scene) != known.end()) continue;
     std::string list;
     for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
     throw InputError("--scenes", "must be of " + list + ", is '" + scene + "'");
   }
-  std::optional<CsvTable> published;
-  if (!command.published.empty()) published = CsvTable::Read(command.published, {kVoxelsColumn});
+  std::optional<bench::CsvTable> published;
+  if (!command.published.empty())
+    published = bench::CsvTable::Read(command.published, {bench::kVoxelsColumn});
   const std::string out = MakeOutFolder(command.out);
 
   const std::size_t num_sizes = command.options.voxels_per_side.size();
-  const CsvTable table = MakeSdfTimingTable(RunSdfTiming(command.options, [&](int done) {
-    std::fprintf(stderr, "%d of %zu sizes\n", done, num_sizes);
-  }));
-  WriteTextFile(out + "/rows.csv", table.ToText());
-  std::printf("%swritten: %s/rows.csv\n", DescribeSdfTiming(table, published).c_str(), out.c_str());
-  const std::string svg = DrawInto(out, "figure", MakeSdfTimingFigure(table, published));
-  WriteTextFile(out + "/index.html", MakeSdfTimingPage(command.options, table, published, svg));
+  const bench::CsvTable table =
+      bench::MakeSdfTimingTable(bench::RunSdfTiming(command.options, [&](int done) {
+        std::fprintf(stderr, "%d of %zu sizes\n", done, num_sizes);
+      }));
+  bench::WriteTextFile(out + "/rows.csv", table.ToText());
+  std::printf("%swritten: %s/rows.csv\n", bench::DescribeSdfTiming(table, published).c_str(),
+              out.c_str());
+  const std::string svg = DrawInto(out, "figure", bench::MakeSdfTimingFigure(table, published));
+  bench::WriteTextFile(out + "/index.html",
+                       bench::MakeSdfTimingPage(command.options, table, published, svg));
   std::printf("written: %s/index.html\n", out.c_str());
   return 0;
 }
@@ -67,4 +71,4 @@ void AddReproduceSdfTiming(CommandLine& line, CLI::App& reproduce) {
   command->callback([&line, options] { line.exit_code = Run(*options); });
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

@@ -4,16 +4,17 @@
 #include <string>
 #include <vector>
 
-#include "bench/episode.h"
-#include "bench/result_file.h"
-#include "bench/statistics.h"
-#include "cli/command.h"
-#include "cli/number_range.h"
-#include "cli/out_folder.h"
-#include "cli/versions.h"
-#include "cli/wiring.h"
+#include "sidestep/bench/episode.h"
+#include "sidestep/bench/result_file.h"
+#include "sidestep/bench/statistics.h"
+#include "sidestep/cli/command.h"
+#include "sidestep/cli/number_range.h"
+#include "sidestep/cli/out_folder.h"
+#include "sidestep/cli/versions.h"
+#include "sidestep/cli/wiring.h"
+#include "sidestep/record/recording_file.h"
 
-namespace sidestep {
+namespace sidestep::cli {
 namespace {
 
 struct RunOptions {
@@ -24,7 +25,7 @@ struct RunOptions {
   bool json = false;
 };
 
-void PrintSummary(const EpisodeResult& result, const std::string& out) {
+void PrintSummary(const bench::EpisodeResult& result, const std::string& out) {
   const auto& metrics = result.recording.metrics;
   const auto number = [&](const char* name, double scale, const char* format) {
     char text[64];
@@ -39,7 +40,8 @@ void PrintSummary(const EpisodeResult& result, const std::string& out) {
   std::printf("GP cost          %s\n", number("gp_cost", 1, "%.2f").c_str());
   std::printf("jerk RMS         %s\n", number("jerk_rms", 1, "%.1f rad/s^3").c_str());
   std::printf("planning cycle   %.1f ms CPU (median of %zu)\n",
-              1e3 * Quantile(result.times.at("cycle"), 0.5), result.times.at("cycle").size());
+              1e3 * bench::Quantile(result.times.at("cycle"), 0.5),
+              result.times.at("cycle").size());
   std::printf("written          %s/result.json, %s/trace.h5\n", out.c_str(), out.c_str());
 }
 
@@ -51,14 +53,15 @@ int Run(const RunOptions& options) {
   const std::string out = MakeOutFolder(options.out.empty() ? "out/" + problem.scenario.name + "/" +
                                                                   problem.scenario.knowledge
                                                             : options.out);
-  EpisodeResult result = RunEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths));
+  bench::EpisodeResult result =
+      bench::RunEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths));
   const auto versions = Versions();
   for (const auto& [part, version] : versions) {
     result.recording.header["version." + part] = version;
   }
-  WriteRecording(result.recording, out + "/trace.h5");
-  const std::string json = ResultJson(result, problem.scenario, versions);
-  WriteTextFile(out + "/result.json", json);
+  record::WriteRecording(result.recording, out + "/trace.h5");
+  const std::string json = bench::ResultJson(result, problem.scenario, versions);
+  bench::WriteTextFile(out + "/result.json", json);
   if (options.json) {
     std::fputs(json.c_str(), stdout);
   } else {
@@ -99,4 +102,4 @@ void AddRunCommand(CommandLine& line) {
   run->callback([&line, options] { line.exit_code = Run(*options); });
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

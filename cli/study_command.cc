@@ -9,18 +9,18 @@
 #include <string>
 #include <vector>
 
-#include "bench/reproduce/parallel.h"
-#include "bench/result_file.h"
-#include "bench/study.h"
-#include "bench/study_log.h"
-#include "cli/command.h"
-#include "cli/number_range.h"
-#include "cli/out_folder.h"
-#include "cli/versions.h"
-#include "cli/wiring.h"
-#include "core/input_error.h"
+#include "sidestep/bench/reproduce/parallel.h"
+#include "sidestep/bench/result_file.h"
+#include "sidestep/bench/study.h"
+#include "sidestep/bench/study_log.h"
+#include "sidestep/cli/command.h"
+#include "sidestep/cli/number_range.h"
+#include "sidestep/cli/out_folder.h"
+#include "sidestep/cli/versions.h"
+#include "sidestep/cli/wiring.h"
+#include "sidestep/core/input_error.h"
 
-namespace sidestep {
+namespace sidestep::cli {
 namespace {
 
 // Stands in the place of a kind of knowledge: who knows all and has time.
@@ -63,10 +63,11 @@ std::string Short(double value) {
 }
 
 // What varies: the file's choices that no setting fixes, then what the flags list.
-std::vector<Factors> Cases(const StudyOptions& options, const Settings& settings,
+std::vector<Factors> Cases(const StudyOptions& options, const scenarios::Settings& settings,
                            const DataPaths& paths) {
   std::vector<Factors> cases = {{}};
-  for (const auto& [choice, values] : ScenarioChoices(FindScenario(options.scenario, paths))) {
+  for (const auto& [choice, values] :
+       scenarios::ScenarioChoices(FindScenario(options.scenario, paths))) {
     if (settings.count(choice) == 0) cases = Cross(cases, choice, values);
   }
   std::vector<std::string> speeds, seeds;
@@ -83,7 +84,7 @@ std::vector<Factors> Cases(const StudyOptions& options, const Settings& settings
   return Cross(cases, "seed", seeds);
 }
 
-Problem MakeCase(const StudyOptions& options, Settings settings, const Factors& factors,
+Problem MakeCase(const StudyOptions& options, scenarios::Settings settings, const Factors& factors,
                  const DataPaths& paths) {
   Overrides overrides;
   for (const auto& [factor, value] : factors) {
@@ -99,12 +100,12 @@ Problem MakeCase(const StudyOptions& options, Settings settings, const Factors& 
   }
   overrides.settings = settings;
   Problem problem = LoadProblem(options.scenario, overrides, paths);
-  if (options.episodes > 0) VaryObstacles(problem.scenario, problem.scenario.seed);
+  if (options.episodes > 0) bench::VaryObstacles(problem.scenario, problem.scenario.seed);
   return problem;
 }
 
 // What rows must have in common to stand in one table: all that is not a factor of theirs.
-std::string Identity(const StudyOptions& options, const Settings& settings,
+std::string Identity(const StudyOptions& options, const scenarios::Settings& settings,
                      const DataPaths& paths) {
   std::ifstream file(FindScenario(options.scenario, paths));
   std::string text = VersionText() + "\n";
@@ -116,7 +117,7 @@ std::string Identity(const StudyOptions& options, const Settings& settings,
 
 int Study(const StudyOptions& options) {
   const DataPaths paths = FindDataPaths();
-  const Settings settings = ParseSettings(options.settings);
+  const scenarios::Settings settings = ParseSettings(options.settings);
   if (options.episodes > 0 && settings.count("seed") != 0) {
     throw InputError("--set seed", "is what --episodes varies");
   }
@@ -138,13 +139,13 @@ int Study(const StudyOptions& options) {
                                   "folder");
   }
 
-  StudyLog log(out + "/study.jsonl", Identity(options, settings, paths), options.resume);
-  std::vector<StudyRow> rows(cases.size());
+  bench::StudyLog log(out + "/study.jsonl", Identity(options, settings, paths), options.resume);
+  std::vector<bench::StudyRow> rows(cases.size());
   std::mutex finishing;
   std::size_t num_done = 0;
-  RunTasks(static_cast<int>(cases.size()), options.jobs, [&](int i) {
+  bench::RunTasks(static_cast<int>(cases.size()), options.jobs, [&](int i) {
     const auto n = static_cast<std::size_t>(i);
-    if (const StudyRow* const row = log.Find(cases[n])) {
+    if (const bench::StudyRow* const row = log.Find(cases[n])) {
       rows[n] = *row;
       const std::lock_guard lock(finishing);
       ++num_done;
@@ -153,21 +154,22 @@ int Study(const StudyOptions& options) {
     const Problem problem = MakeCase(options, settings, cases[n], paths);
     const auto knowledge = cases[n].find("knowledge");
     const bool search = knowledge != cases[n].end() && knowledge->second == kSearch;
-    rows[n] =
-        search ? RunStudySearch(problem.scenario, problem.robot, options.search, cases[n])
-               : RunStudyEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths), cases[n]);
+    rows[n] = search
+                  ? bench::RunStudySearch(problem.scenario, problem.robot, options.search, cases[n])
+                  : bench::RunStudyEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths),
+                                           cases[n]);
     const std::lock_guard lock(finishing);
     log.Append(rows[n]);
     ++num_done;
     if (num_done % 50 == 0) std::fprintf(stderr, "%zu of %zu\n", num_done, cases.size());
   });
 
-  WriteTextFile(out + "/study.csv", StudyCsv(rows));
-  const std::string table = OutcomeTable(rows, options.down, options.across);
-  WriteTextFile(out + "/study.md", table);
+  bench::WriteTextFile(out + "/study.csv", bench::StudyCsv(rows));
+  const std::string table = bench::OutcomeTable(rows, options.down, options.across);
+  bench::WriteTextFile(out + "/study.md", table);
   std::printf("%s\nwritten %s/study.csv, %s/study.md\n", table.c_str(), out.c_str(), out.c_str());
-  const bool failed = std::any_of(rows.begin(), rows.end(),
-                                  [](const StudyRow& row) { return row.outcome == "failed"; });
+  const bool failed = std::any_of(
+      rows.begin(), rows.end(), [](const bench::StudyRow& row) { return row.outcome == "failed"; });
   return failed ? 1 : 0;
 }
 
@@ -213,4 +215,4 @@ void AddStudyCommand(CommandLine& line) {
   study->callback([&line, options] { line.exit_code = Study(*options); });
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

@@ -1,13 +1,13 @@
-#include "cli/versions.h"
+#include "sidestep/cli/versions.h"
 
 #include <gnu/libc-version.h>
 
-#include "cli/build_info.h"  // made by CMake
-#include "core/recording.h"
-#include "planner/registry.h"
-#include "sim/mujoco_model.h"
+#include "sidestep/cli/build_info.h"  // made by CMake
+#include "sidestep/planner/registry.h"
+#include "sidestep/record/recording_file.h"
+#include "sidestep/sim/mujoco_model.h"
 
-namespace sidestep {
+namespace sidestep::cli {
 namespace {
 
 // glibc chooses among variants of sin, cos and exp by these, and they differ in the last bit.
@@ -30,12 +30,12 @@ std::map<std::string, std::string> Versions() {
       {"commit", kCommit},
       {"build_type", kBuildType},
       {"compiler", kCompiler},
-      {"mujoco", MujocoVersion()},
-      {"ceres", CeresVersion()},
-      {"hdf5", Hdf5Version()},
+      {"mujoco", sim::MujocoVersion()},
+      {"ceres", planner::CeresVersion()},
+      {"hdf5", record::Hdf5Version()},
       {"c_library", std::string("glibc ") + gnu_get_libc_version()},
       {"cpu_features", CpuFeatures()},
   };
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

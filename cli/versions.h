@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-namespace sidestep {
+namespace sidestep::cli {
 
 /// "sidestep 0.1.0".
 std::string VersionNumber();
@@ -14,4 +14,4 @@ std::string VersionText();
 /// libraries, and the variant of the C library that this CPU gets.
 std::map<std::string, std::string> Versions();
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

@@ -1,36 +1,36 @@
-#include "cli/wiring.h"
+#include "sidestep/cli/wiring.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <memory>
 
-#include "bench/resolve.h"
-#include "core/input_error.h"
-#include "planner/registry.h"
-#include "sdf/prediction/registry.h"
-#include "sdf/world_model.h"
-#include "sim/sensors.h"
-#include "sim/simulation.h"
+#include "sidestep/bench/resolve.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/planner/registry.h"
+#include "sidestep/sdf/prediction/registry.h"
+#include "sidestep/sdf/world_model.h"
+#include "sidestep/sim/sensors.h"
+#include "sidestep/sim/simulation.h"
 
-namespace sidestep {
+namespace sidestep::cli {
 namespace {
 
-void Override(Scenario& scenario, const Overrides& overrides) {
+void Override(scenarios::Scenario& scenario, const Overrides& overrides) {
   if (overrides.knowledge) scenario.knowledge = *overrides.knowledge;
   if (overrides.predictor) scenario.predictor = *overrides.predictor;
   if (overrides.latency_ms) scenario.latency_s = *overrides.latency_ms / 1e3;
   if (overrides.epsilon_m) scenario.epsilon_m = *overrides.epsilon_m;
-  if (scenario.epsilon_m > kMaxMarginCells * scenario.grid.cell_m) {
-    throw InputError("--epsilon", "must be at most " + std::to_string(kMaxMarginCells) +
+  if (scenario.epsilon_m > scenarios::kMaxMarginCells * scenario.grid.cell_m) {
+    throw InputError("--epsilon", "must be at most " + std::to_string(scenarios::kMaxMarginCells) +
                                       " cells of the workspace");
   }
   if (overrides.speed_m_s) {
     if (scenario.moving_obstacles.empty()) {
       throw InputError("--speed", "this scenario has no moving obstacle");
     }
-    for (MovingObstacle& obstacle : scenario.moving_obstacles) {
+    for (scenarios::MovingObstacle& obstacle : scenario.moving_obstacles) {
       std::visit([&](auto& motion) { motion.speed_m_s = *overrides.speed_m_s; }, obstacle.motion);
-      const auto* const accelerated = std::get_if<AcceleratedMotion>(&obstacle.motion);
+      const auto* const accelerated = std::get_if<scenarios::AcceleratedMotion>(&obstacle.motion);
       if (accelerated && accelerated->max_speed_m_s < accelerated->speed_m_s) {
         throw InputError("--speed", "is above the max_speed_m_s of '" + obstacle.name + "'");
       }
@@ -43,19 +43,19 @@ void Override(Scenario& scenario, const Overrides& overrides) {
 
 std::vector<std::string> KnowledgeWords() {
   std::vector<std::string> words;
-  for (const Knowledge knowledge : kAllKnowledge) words.push_back(ToString(knowledge));
+  for (const sdf::Knowledge knowledge : sdf::kAllKnowledge) words.push_back(ToString(knowledge));
   return words;
 }
 
 // Complains about `word` where it was written: the flag if there was one, else the file's line.
-void CheckWord(const Scenario& scenario, const std::string& key, const std::string& word,
+void CheckWord(const scenarios::Scenario& scenario, const std::string& key, const std::string& word,
                const std::vector<std::string>& known, const char* flag = nullptr) {
   if (std::find(known.begin(), known.end(), word) != known.end()) return;
   std::string list;
   for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
   const std::string why = "must be one of " + list + ", is '" + word + "'";
   if (flag != nullptr) throw InputError(flag, why);
-  throw WrongValue(scenario, key, why);
+  throw scenarios::WrongValue(scenario, key, why);
 }
 
 std::vector<std::string> ModelNames(const std::string& models, const std::string& file_suffix) {
@@ -71,17 +71,17 @@ std::vector<std::string> ModelNames(const std::string& models, const std::string
 }
 
 // The file, overridden, with the words judged that have nothing to do with a robot.
-Scenario LoadOverridden(const std::string& name, const Overrides& overrides,
-                        const DataPaths& paths) {
-  Settings settings = overrides.settings;
+scenarios::Scenario LoadOverridden(const std::string& name, const Overrides& overrides,
+                                   const DataPaths& paths) {
+  scenarios::Settings settings = overrides.settings;
   if (overrides.seed) settings["seed"] = std::to_string(*overrides.seed);  // motions follow from it
-  Scenario scenario = LoadScenario(FindScenario(name, paths), settings);
+  scenarios::Scenario scenario = scenarios::LoadScenario(FindScenario(name, paths), settings);
   Override(scenario, overrides);
   CheckWord(scenario, "knowledge", scenario.knowledge, KnowledgeWords(),
             overrides.knowledge ? "--knowledge" : nullptr);
-  CheckWord(scenario, "predictor", scenario.predictor, PredictorNames(),
+  CheckWord(scenario, "predictor", scenario.predictor, sdf::PredictorNames(),
             overrides.predictor ? "--predictor" : nullptr);
-  CheckWord(scenario, "sensor.name", scenario.sensor.name, SensorNames());
+  CheckWord(scenario, "sensor.name", scenario.sensor.name, sim::SensorNames());
   for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
     const std::string& appearance = scenario.moving_obstacles[i].appearance;
     if (appearance.empty()) continue;
@@ -91,18 +91,18 @@ Scenario LoadOverridden(const std::string& name, const Overrides& overrides,
   return scenario;
 }
 
-Problem AddRobot(Scenario scenario, const DataPaths& paths) {
-  CheckWord(scenario, "planner.name", scenario.planner, PlannerNames());
+Problem AddRobot(scenarios::Scenario scenario, const DataPaths& paths) {
+  CheckWord(scenario, "planner.name", scenario.planner, planner::PlannerNames());
   CheckWord(scenario, "robot.model", scenario.robot, ModelNames(paths.models, "robot.yaml"));
-  RobotModel robot = RobotModel::Load(paths.models, scenario.robot, scenario.X_WB);
-  ResolveTask(scenario, robot);
+  robot::RobotModel robot = robot::RobotModel::Load(paths.models, scenario.robot, scenario.X_WB);
+  bench::ResolveTask(scenario, robot);
   return {std::move(scenario), std::move(robot)};
 }
 
 }  // namespace
 
-Settings ParseSettings(const std::vector<std::string>& texts) {
-  Settings settings;
+scenarios::Settings ParseSettings(const std::vector<std::string>& texts) {
+  scenarios::Settings settings;
   for (const std::string& text : texts) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0) {
@@ -117,7 +117,7 @@ Settings ParseSettings(const std::vector<std::string>& texts) {
 }
 
 Problem LoadProblem(const std::string& name, const Overrides& overrides, const DataPaths& paths) {
-  Scenario scenario = LoadOverridden(name, overrides, paths);
+  scenarios::Scenario scenario = LoadOverridden(name, overrides, paths);
   if (scenario.robot.empty()) {
     throw InputError("SCENARIO", "'" + name + "' has no robot: it can be drawn (sidestep field) " +
                                      "and timed (sidestep reproduce sdf_timing), but not run");
@@ -126,20 +126,22 @@ Problem LoadProblem(const std::string& name, const Overrides& overrides, const D
 }
 
 Scene LoadScene(const std::string& name, const Overrides& overrides, const DataPaths& paths) {
-  Scenario scenario = LoadOverridden(name, overrides, paths);
+  scenarios::Scenario scenario = LoadOverridden(name, overrides, paths);
   if (scenario.robot.empty()) {
-    EpisodeWorld world = MakeEpisodeWorld(std::make_shared<Simulation>(scenario, paths.models));
+    bench::EpisodeWorld world =
+        bench::MakeEpisodeWorld(std::make_shared<sim::Simulation>(scenario, paths.models));
     return {std::move(scenario), std::move(world)};
   }
   Problem problem = AddRobot(std::move(scenario), paths);
-  EpisodeWorld world = SimulatedWorlds(paths)(problem.scenario, problem.robot);
+  bench::EpisodeWorld world = SimulatedWorlds(paths)(problem.scenario, problem.robot);
   return {std::move(problem.scenario), std::move(world)};
 }
 
-WorldFactory SimulatedWorlds(const DataPaths& paths) {
-  return [models = paths.models](const Scenario& scenario, const RobotModel& robot) {
-    return MakeEpisodeWorld(std::make_shared<Simulation>(scenario, robot, models));
-  };
+bench::WorldFactory SimulatedWorlds(const DataPaths& paths) {
+  return
+      [models = paths.models](const scenarios::Scenario& scenario, const robot::RobotModel& robot) {
+        return bench::MakeEpisodeWorld(std::make_shared<sim::Simulation>(scenario, robot, models));
+      };
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

@@ -4,16 +4,16 @@
 #include <string>
 #include <vector>
 
-#include "bench/episode.h"
-#include "cli/data_paths.h"
-#include "robot/robot_model.h"
-#include "scenarios/scenario.h"
+#include "sidestep/bench/episode.h"
+#include "sidestep/cli/data_paths.h"
+#include "sidestep/robot/robot_model.h"
+#include "sidestep/scenarios/scenario.h"
 
-namespace sidestep {
+namespace sidestep::cli {
 
 /// What the command line may change of a scenario.
 struct Overrides {
-  Settings settings;  ///< put in place first
+  scenarios::Settings settings;  ///< put in place first
   std::optional<std::string> knowledge, predictor;
   std::optional<double> speed_m_s;  ///< of every moving obstacle
   std::optional<int> seed;
@@ -21,12 +21,12 @@ struct Overrides {
 };
 
 /// KEY=VALUE each. @throws InputError for one without a key or a =, or a key given twice.
-Settings ParseSettings(const std::vector<std::string>& texts);
+scenarios::Settings ParseSettings(const std::vector<std::string>& texts);
 
 /// A scenario that is ready to run, and its robot.
 struct Problem {
-  Scenario scenario;
-  RobotModel robot;
+  scenarios::Scenario scenario;
+  robot::RobotModel robot;
 };
 
 /// Reads, overrides, loads the robot and judges everything that a person wrote, every name too.
@@ -36,14 +36,14 @@ Problem LoadProblem(const std::string& scenario, const Overrides& overrides,
 
 /// A scenario's simulated world at time 0.
 struct Scene {
-  Scenario scenario;
-  EpisodeWorld world;
+  scenarios::Scenario scenario;
+  bench::EpisodeWorld world;
 };
 
 /// The same for what needs no robot, so that the scenario may have none. @throws InputError.
 Scene LoadScene(const std::string& scenario, const Overrides& overrides, const DataPaths& paths);
 
 /// Simulated worlds.
-WorldFactory SimulatedWorlds(const DataPaths& paths);
+bench::WorldFactory SimulatedWorlds(const DataPaths& paths);
 
-}  // namespace sidestep
+}  // namespace sidestep::cli

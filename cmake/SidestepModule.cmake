@@ -8,20 +8,27 @@ target_compile_options(sidestep_warnings INTERFACE -Wall -Wextra -Wpedantic -Wsh
 # GCC 12 warns of its own std::string concatenation (its bug 105651).
 target_compile_options(sidestep_warnings INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 
+# Headers are named as they are once installed, "sidestep/<module>/<file>.h": in the tree through
+# one link to its root, so that what a header is called never depends on where it is read from.
+set(SIDESTEP_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
+file(MAKE_DIRECTORY ${SIDESTEP_INCLUDE_DIR})
+file(CREATE_LINK ${PROJECT_SOURCE_DIR} ${SIDESTEP_INCLUDE_DIR}/sidestep SYMBOLIC)
+
 # sidestep_module(<folder> SOURCES <file>... [DEPENDS <public target>...]
 #                 [PRIVATE_DEPENDS <target>...])
 #
-# One folder, one static library, one alias sidestep::<folder>. Include paths start at the
-# repository root. DEPENDS are the module's arrows; tests/architecture_test.cc holds the includes
-# to them. The library and the module's headers are installed for other projects.
+# One folder, one static library, one alias sidestep::<folder>. DEPENDS are the module's arrows;
+# tests/architecture_test.cc holds the includes to them. The library, which may be linked into a
+# shared one, and the module's headers are installed for other projects.
 function(sidestep_module name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
   add_library(sidestep_${name} STATIC ${ARG_SOURCES})
   add_library(sidestep::${name} ALIAS sidestep_${name})
-  set_target_properties(sidestep_${name} PROPERTIES EXPORT_NAME ${name})
+  set_target_properties(sidestep_${name} PROPERTIES EXPORT_NAME ${name}
+                                                   POSITION_INDEPENDENT_CODE ON)
   target_compile_features(sidestep_${name} PUBLIC cxx_std_20)
-  target_include_directories(sidestep_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
-                                                     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/sidestep>)
+  target_include_directories(sidestep_${name} PUBLIC $<BUILD_INTERFACE:${SIDESTEP_INCLUDE_DIR}>
+                                                     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(
     sidestep_${name}
     PUBLIC ${ARG_DEPENDS}

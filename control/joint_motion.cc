@@ -1,9 +1,9 @@
-#include "control/joint_motion.h"
+#include "sidestep/control/joint_motion.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace sidestep {
+namespace sidestep::control {
 namespace {
 
 // The deceleration d of the next tick after which the speed v >= 0, with the deceleration taken
@@ -56,4 +56,4 @@ double SafeAcceleration(const JointMotion& motion, double wanted, const JointBou
   return safe;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::control

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace sidestep {
+namespace sidestep::control {
 
 /// Bounds of one joint's commanded motion.
 struct JointBounds {
@@ -41,4 +41,4 @@ bool CanStopWithin(const JointMotion& motion, const JointBounds& bounds, double 
 double SafeAcceleration(const JointMotion& motion, double wanted, const JointBounds& bounds,
                         double period_s);
 
-}  // namespace sidestep
+}  // namespace sidestep::control

@@ -1,13 +1,13 @@
-#include "control/tracker.h"
+#include "sidestep/control/tracker.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include "control/joint_motion.h"
+#include "sidestep/control/joint_motion.h"
 
-namespace sidestep {
+namespace sidestep::control {
 namespace {
 
 // Fast enough that a jump of the target's acceleration by da moves the joint off by only
@@ -73,7 +73,7 @@ JointMotion OneTickBefore(const TrajectoryPoint& point, Eigen::Index j, double h
 
 }  // namespace
 
-TrackerLimits TrackerLimits::Of(const RobotModel& robot, double v_scale, double a_scale,
+TrackerLimits TrackerLimits::Of(const robot::RobotModel& robot, double v_scale, double a_scale,
                                 double jerk_scale) {
   const int n = robot.num_joints();
   TrackerLimits limits;
@@ -82,7 +82,7 @@ TrackerLimits TrackerLimits::Of(const RobotModel& robot, double v_scale, double 
     values->resize(n);
   }
   for (int j = 0; j < n; ++j) {
-    const JointLimits& joint = robot.limits()[static_cast<std::size_t>(j)];
+    const robot::JointLimits& joint = robot.limits()[static_cast<std::size_t>(j)];
     limits.q_min(j) = joint.q_min;
     limits.q_max(j) = joint.q_max;
     limits.v_max(j) = v_scale * joint.v_max;
@@ -176,4 +176,4 @@ void JerkLimitedTracker::CheckShape(const Eigen::VectorXd& values) const {
   }
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::control

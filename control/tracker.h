@@ -2,10 +2,10 @@
 
 #include <Eigen/Core>
 
-#include "core/trajectory.h"
-#include "robot/robot_model.h"
+#include "sidestep/core/trajectory.h"
+#include "sidestep/robot/robot_model.h"
 
-namespace sidestep {
+namespace sidestep::control {
 
 /// What the motors are told in one tick. Shape n each: rad, rad/s, rad/s^2, rad/s^3. v, a and jerk
 /// are the backward differences of the commanded q, v and a over one tick.
@@ -19,8 +19,8 @@ struct TrackerLimits {
   Eigen::VectorXd q_min, q_max;            ///< q_min < q_max
   Eigen::VectorXd v_max, a_max, jerk_max;  ///< all > 0
   /// Fractions of a robot's limits; the defaults follow common practice on a Panda.
-  static TrackerLimits Of(const RobotModel& robot, double v_scale = 1.0, double a_scale = 1.0,
-                          double jerk_scale = 0.5);
+  static TrackerLimits Of(const robot::RobotModel& robot, double v_scale = 1.0,
+                          double a_scale = 1.0, double jerk_scale = 0.5);
 };
 
 /// Turns a trajectory, whose acceleration jumps and which may be replaced at any time, into a
@@ -64,4 +64,4 @@ class JerkLimitedTracker {
   Eigen::VectorXd q_, v_, a_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::control

@@ -1,4 +1,4 @@
-#include "core/grid.h"
+#include "sidestep/core/grid.h"
 
 #include <algorithm>
 #include <cmath>

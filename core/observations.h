@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "core/pose.h"
-#include "core/shape.h"
-#include "core/time.h"
+#include "sidestep/core/pose.h"
+#include "sidestep/core/shape.h"
+#include "sidestep/core/time.h"
 
 namespace sidestep {
 

@@ -1,4 +1,4 @@
-#include "core/pose.h"
+#include "sidestep/core/pose.h"
 
 #include <cmath>
 #include <limits>

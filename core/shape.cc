@@ -1,4 +1,4 @@
-#include "core/shape.h"
+#include "sidestep/core/shape.h"
 
 #include <algorithm>
 #include <cmath>

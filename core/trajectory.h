@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "core/time.h"
+#include "sidestep/core/time.h"
 
 namespace sidestep {
 

@@ -1,4 +1,4 @@
-#include "core/yaml_reader.h"
+#include "sidestep/core/yaml_reader.h"
 
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
@@ -14,7 +14,7 @@
 #include <set>
 #include <sstream>
 
-#include "core/input_error.h"
+#include "sidestep/core/input_error.h"
 
 namespace sidestep {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/pose.h"
+#include "sidestep/core/pose.h"
 
 namespace sidestep {
 

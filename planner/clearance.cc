@@ -1,13 +1,13 @@
-#include "planner/clearance.h"
+#include "sidestep/planner/clearance.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "planner/guarded_spheres.h"
-#include "planner/self_clearance.h"
+#include "sidestep/planner/guarded_spheres.h"
+#include "sidestep/planner/self_clearance.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 namespace {
 
 constexpr double kSameTime_s = 0.02;  // contacts this close are at one time
@@ -23,7 +23,7 @@ bool IsSafer(const Clearance& a, const Clearance& b) {
   return a.least_m > b.least_m;
 }
 
-Clearance MeasureClearance(const RobotModel& robot, const DistanceField& field,
+Clearance MeasureClearance(const robot::RobotModel& robot, const sdf::DistanceField& field,
                            const Trajectory& trajectory, EpisodeTime start, EpisodeTime from,
                            EpisodeTime to, double step_s) {
   const std::vector<int> spheres = GuardedSpheres(robot);
@@ -31,11 +31,11 @@ Clearance MeasureClearance(const RobotModel& robot, const DistanceField& field,
   const double duration_s = std::max(0.0, (to - from).seconds());
   const int num_steps = static_cast<int>(std::ceil(duration_s / step_s));
   Eigen::Matrix3Xd p_WS(3, spheres.size());
-  DistanceSamples samples;
+  sdf::DistanceSamples samples;
   Clearance clearance;
   for (int i = 0; i <= num_steps; ++i) {
     const EpisodeTime t = from + HorizonOffset(std::min(duration_s, i * step_s));
-    const SphereCenters centers =
+    const robot::SphereCenters centers =
         robot.ComputeSphereCenters(Sample(trajectory, t - start).q, /*with_jacobian=*/false);
     for (std::size_t s = 0; s < spheres.size(); ++s) p_WS.col(s) = centers.p_WS.col(spheres[s]);
     clearance.least_m = std::min(clearance.least_m, links.Least(centers.p_WS));
@@ -50,4 +50,4 @@ Clearance MeasureClearance(const RobotModel& robot, const DistanceField& field,
   return clearance;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -3,12 +3,12 @@
 #include <limits>
 #include <optional>
 
-#include "core/time.h"
-#include "core/trajectory.h"
-#include "robot/robot_model.h"
-#include "sdf/distance_field.h"
+#include "sidestep/core/time.h"
+#include "sidestep/core/trajectory.h"
+#include "sidestep/robot/robot_model.h"
+#include "sidestep/sdf/distance_field.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// How close a motion comes to what a field holds, and the robot to itself: the judge of plans,
 /// because a small cost does not mean free, nor a large one collision.
@@ -27,8 +27,8 @@ bool IsSafer(const Clearance& a, const Clearance& b);
 
 /// Samples the motion along `trajectory`, which began at `start`, every `step_s` from `from` to
 /// `to`, and at `to`. Before its first and after its last state it rests.
-Clearance MeasureClearance(const RobotModel& robot, const DistanceField& field,
+Clearance MeasureClearance(const robot::RobotModel& robot, const sdf::DistanceField& field,
                            const Trajectory& trajectory, EpisodeTime start, EpisodeTime from,
                            EpisodeTime to, double step_s = 0.02);
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -1,9 +1,9 @@
-#include "planner/first_guess.h"
+#include "sidestep/planner/first_guess.h"
 
 #include <stdexcept>
 #include <vector>
 
-namespace sidestep {
+namespace sidestep::planner {
 namespace {
 
 constexpr double kLateBegin = 0.4;  // share of the free time
@@ -98,4 +98,4 @@ Trajectory MakeWarmStart(const PlanRequest& request) {
   return motion;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

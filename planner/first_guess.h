@@ -1,10 +1,10 @@
 #pragma once
 
-#include "core/random.h"
-#include "core/trajectory.h"
-#include "planner/planner.h"
+#include "sidestep/core/random.h"
+#include "sidestep/core/trajectory.h"
+#include "sidestep/planner/planner.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// When a direct motion uses the time it has. Nearly every plan that a moving obstacle spoils is
 /// spoilt by its timing, passing before the obstacle instead of behind it or the reverse, so other
@@ -28,4 +28,4 @@ Trajectory MakeDetour(const PlanRequest& request, RandomStream& random);
 /// The request's `initial`, its state 0 replaced by (q_start, v_start). There must be one.
 Trajectory MakeWarmStart(const PlanRequest& request);
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

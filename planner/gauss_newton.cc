@@ -1,19 +1,20 @@
-#include "planner/gauss_newton.h"
+#include "sidestep/planner/gauss_newton.h"
 
 #include <algorithm>
 #include <stdexcept>
 #include <string>
 
-#include "planner/gp_trajectory.h"
+#include "sidestep/planner/gp_trajectory.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 namespace {
 
 void Require(bool condition, const std::string& what) {
   if (!condition) throw std::invalid_argument("GaussNewton: " + what);
 }
 
-void Check(const RobotModel& robot, const Trajectory& initial, const GaussNewtonOptions& options) {
+void Check(const robot::RobotModel& robot, const Trajectory& initial,
+           const GaussNewtonOptions& options) {
   CheckTrajectory(initial);
   Require(initial.num_joints() == robot.num_joints(),
           "the trajectory must have the robot's joints");
@@ -26,7 +27,7 @@ void Check(const RobotModel& robot, const Trajectory& initial, const GaussNewton
 
 }  // namespace
 
-GaussNewton::GaussNewton(const RobotModel& robot, const Trajectory& initial,
+GaussNewton::GaussNewton(const robot::RobotModel& robot, const Trajectory& initial,
                          const GaussNewtonOptions& options)
     : robot_(robot),
       options_(options),
@@ -57,7 +58,7 @@ GaussNewton::GaussNewton(const RobotModel& robot, const Trajectory& initial,
   }
 }
 
-void GaussNewton::SetField(int k, const DistanceField& field, EpisodeTime start) {
+void GaussNewton::SetField(int k, const sdf::DistanceField& field, EpisodeTime start) {
   StepObstacles& step = obstacles_.at(static_cast<std::size_t>(k));
   step.hinge =
       std::make_unique<ObstacleHinge>(robot_, field, options_.epsilon_m, options_.sigma_obs);
@@ -178,4 +179,4 @@ PlanCost GaussNewton::ComputeCost() {
   return cost;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

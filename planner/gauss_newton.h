@@ -4,15 +4,15 @@
 #include <memory>
 #include <vector>
 
-#include "core/time.h"
-#include "core/trajectory.h"
-#include "planner/costs/obstacle_hinge.h"
-#include "planner/gauss_newton_band.h"
-#include "planner/planner.h"
-#include "robot/robot_model.h"
-#include "sdf/distance_field.h"
+#include "sidestep/core/time.h"
+#include "sidestep/core/trajectory.h"
+#include "sidestep/planner/costs/obstacle_hinge.h"
+#include "sidestep/planner/gauss_newton_band.h"
+#include "sidestep/planner/planner.h"
+#include "sidestep/robot/robot_model.h"
+#include "sidestep/sdf/distance_field.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// Units as in the cost functions of planner/costs/.
 struct GaussNewtonOptions {
@@ -45,13 +45,13 @@ class GaussNewton {
  public:
   /// @param robot is borrowed. @param initial the first states, on an even grid of >= 2 times.
   /// @throws std::invalid_argument for options out of range or a trajectory that does not fit.
-  GaussNewton(const RobotModel& robot, const Trajectory& initial,
+  GaussNewton(const robot::RobotModel& robot, const Trajectory& initial,
               const GaussNewtonOptions& options);
 
   /// What the obstacle costs of state `k` and of the interval that ends there see from now on;
   /// until it is called they are absent. The field is sampled at `start` + the time of each
   /// configuration since the trajectory's begin. It is borrowed.
-  void SetField(int k, const DistanceField& field, EpisodeTime start);
+  void SetField(int k, const sdf::DistanceField& field, EpisodeTime start);
 
   /// Draws state k to (q, v). Further priors on the same state add to it.
   void AddPrior(int k, const Eigen::VectorXd& q, const Eigen::VectorXd& v, double sigma);
@@ -87,7 +87,7 @@ class GaussNewton {
   void AddHinges(StepObstacles& step, int begin, const Eigen::Vector4d& weights, double share);
   bool Step();
 
-  const RobotModel& robot_;
+  const robot::RobotModel& robot_;
   GaussNewtonOptions options_;
   int n_, K_;
   Eigen::VectorXd t_s_;
@@ -101,4 +101,4 @@ class GaussNewton {
   BlockTridiagonal hessian_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -1,9 +1,9 @@
-#include "planner/gauss_newton_band.h"
+#include "sidestep/planner/gauss_newton_band.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace sidestep {
+namespace sidestep::planner {
 
 BlockTridiagonal::BlockTridiagonal(int num_blocks, int block_size)
     : num_blocks_(num_blocks),
@@ -54,4 +54,4 @@ bool BlockTridiagonal::Solve(Eigen::VectorXd& x) {
   return true;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// A symmetric positive definite matrix that is block tridiagonal, K blocks of D x D on its
 /// diagonal: the Hessian of a chain of states that know only their neighbours. Solved by Cholesky
@@ -29,4 +29,4 @@ class BlockTridiagonal {
   Eigen::MatrixXd band_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -1,11 +1,12 @@
-#include "planner/gauss_newton_planner.h"
+#include "sidestep/planner/gauss_newton_planner.h"
 
-#include "planner/first_guess.h"
-#include "planner/gauss_newton.h"
+#include "sidestep/planner/first_guess.h"
+#include "sidestep/planner/gauss_newton.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
-GaussNewtonPlanner::GaussNewtonPlanner(const RobotModel& robot, const PlannerSettings& settings)
+GaussNewtonPlanner::GaussNewtonPlanner(const robot::RobotModel& robot,
+                                       const PlannerSettings& settings)
     : Planner(robot), settings_(settings) {
   CheckPlannerSettings(settings);
 }
@@ -42,9 +43,9 @@ PlanResult GaussNewtonPlanner::DoPlan(const PlanRequest& request) const {
   return result;
 }
 
-std::unique_ptr<Planner> MakeGaussNewtonPlanner(const RobotModel& robot,
+std::unique_ptr<Planner> MakeGaussNewtonPlanner(const robot::RobotModel& robot,
                                                 const PlannerSettings& settings) {
   return std::make_unique<GaussNewtonPlanner>(robot, settings);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -2,10 +2,10 @@
 
 #include <memory>
 
-#include "planner/planner.h"
-#include "planner/planner_settings.h"
+#include "sidestep/planner/planner.h"
+#include "sidestep/planner/planner_settings.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// `gauss_newton`: the solver of the published experiments (planner/gauss_newton.h), as a planner:
 /// plain Gauss-Newton from the first guess, fixed states held by priors of sigma_goal, no limits,
@@ -15,7 +15,7 @@ namespace sidestep {
 class GaussNewtonPlanner final : public Planner {
  public:
   /// @throws std::invalid_argument for settings out of range.
-  GaussNewtonPlanner(const RobotModel& robot, const PlannerSettings& settings);
+  GaussNewtonPlanner(const robot::RobotModel& robot, const PlannerSettings& settings);
 
  private:
   PlanResult DoPlan(const PlanRequest& request) const override;
@@ -23,7 +23,7 @@ class GaussNewtonPlanner final : public Planner {
   PlannerSettings settings_;
 };
 
-std::unique_ptr<Planner> MakeGaussNewtonPlanner(const RobotModel& robot,
+std::unique_ptr<Planner> MakeGaussNewtonPlanner(const robot::RobotModel& robot,
                                                 const PlannerSettings& settings);
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -1,4 +1,4 @@
-#include "planner/gp_planner.h"
+#include "sidestep/planner/gp_planner.h"
 
 #include <ceres/solver.h>
 
@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "planner/first_guess.h"
-#include "planner/gp_problem.h"
+#include "sidestep/planner/first_guess.h"
+#include "sidestep/planner/gp_problem.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 namespace {
 
 // Weights of the limit costs [1/rad, s/rad, s^2/rad]. In the walkway scene at 1.2 to 2.0 m/s plans
@@ -58,7 +58,7 @@ EpisodeTime FirstFreeTime(const PlanRequest& request) {
 
 }  // namespace
 
-GpPlanner::GpPlanner(const RobotModel& robot, const PlannerSettings& settings)
+GpPlanner::GpPlanner(const robot::RobotModel& robot, const PlannerSettings& settings)
     : Planner(robot), settings_(settings) {
   CheckPlannerSettings(settings);
 }
@@ -147,8 +147,9 @@ PlanResult GpPlanner::DoPlan(const PlanRequest& request) const {
   return best;
 }
 
-std::unique_ptr<Planner> MakeGpPlanner(const RobotModel& robot, const PlannerSettings& settings) {
+std::unique_ptr<Planner> MakeGpPlanner(const robot::RobotModel& robot,
+                                       const PlannerSettings& settings) {
   return std::make_unique<GpPlanner>(robot, settings);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

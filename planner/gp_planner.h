@@ -2,10 +2,10 @@
 
 #include <memory>
 
-#include "planner/planner.h"
-#include "planner/planner_settings.h"
+#include "sidestep/planner/planner.h"
+#include "sidestep/planner/planner_settings.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// `gpmp`: trajectory optimisation after GPMP2, by Levenberg-Marquardt in one thread, with caps on
 /// iterations and never on time.
@@ -24,7 +24,7 @@ namespace sidestep {
 class GpPlanner final : public Planner {
  public:
   /// @throws std::invalid_argument for settings out of range.
-  GpPlanner(const RobotModel& robot, const PlannerSettings& settings);
+  GpPlanner(const robot::RobotModel& robot, const PlannerSettings& settings);
 
  private:
   PlanResult DoPlan(const PlanRequest& request) const override;
@@ -43,6 +43,7 @@ class GpPlanner final : public Planner {
   PlannerSettings settings_;
 };
 
-std::unique_ptr<Planner> MakeGpPlanner(const RobotModel& robot, const PlannerSettings& settings);
+std::unique_ptr<Planner> MakeGpPlanner(const robot::RobotModel& robot,
+                                       const PlannerSettings& settings);
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -1,20 +1,20 @@
-#include "planner/gp_problem.h"
+#include "sidestep/planner/gp_problem.h"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <utility>
 
-#include "planner/costs/acceleration_limit_cost.h"
-#include "planner/costs/gp_prior_cost.h"
-#include "planner/costs/interpolated_obstacle_cost.h"
-#include "planner/costs/mid_velocity_limit_cost.h"
-#include "planner/costs/obstacle_cost.h"
-#include "planner/costs/state_limit_cost.h"
-#include "planner/costs/state_prior_cost.h"
-#include "planner/gp_trajectory.h"
+#include "sidestep/planner/costs/acceleration_limit_cost.h"
+#include "sidestep/planner/costs/gp_prior_cost.h"
+#include "sidestep/planner/costs/interpolated_obstacle_cost.h"
+#include "sidestep/planner/costs/mid_velocity_limit_cost.h"
+#include "sidestep/planner/costs/obstacle_cost.h"
+#include "sidestep/planner/costs/state_limit_cost.h"
+#include "sidestep/planner/costs/state_prior_cost.h"
+#include "sidestep/planner/gp_trajectory.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 namespace {
 
 // Soft costs give way a little: they begin this far inside the robot's position limits.
@@ -30,8 +30,8 @@ ceres::Problem::Options ProblemOptions() {
 
 }  // namespace
 
-GpProblem::GpProblem(const RobotModel& robot, const PlanRequest& request, const Trajectory& initial,
-                     const GpProblemOptions& options)
+GpProblem::GpProblem(const robot::RobotModel& robot, const PlanRequest& request,
+                     const Trajectory& initial, const GpProblemOptions& options)
     : robot_(robot),
       t_s_(initial.t_s),
       step_s_(request.step_s),
@@ -86,7 +86,7 @@ void GpProblem::AddLimits(const LimitWeights& weights, double velocity_scale,
   const int n = robot_.num_joints(), K = static_cast<int>(t_s_.size());
   Eigen::VectorXd lower(2 * n), upper(2 * n), weight(2 * n), a_max(n);
   for (int i = 0; i < n; ++i) {
-    const JointLimits& limits = robot_.limits()[i];
+    const robot::JointLimits& limits = robot_.limits()[i];
     lower(i) = std::min({limits.q_min + kPositionMargin_rad, q_start_(i), q_goal_(i)});
     upper(i) = std::max({limits.q_max - kPositionMargin_rad, q_start_(i), q_goal_(i)});
     upper(n + i) = velocity_scale * limits.v_max;
@@ -150,4 +150,4 @@ void GpProblem::AddTerm(const ceres::CostFunction* cost, int state, double PlanC
   problem_.AddResidualBlock(const_cast<ceres::CostFunction*>(cost), nullptr, blocks);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

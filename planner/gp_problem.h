@@ -8,12 +8,12 @@
 #include <optional>
 #include <vector>
 
-#include "core/trajectory.h"
-#include "planner/costs/obstacle_hinge.h"
-#include "planner/planner.h"
-#include "robot/robot_model.h"
+#include "sidestep/core/trajectory.h"
+#include "sidestep/planner/costs/obstacle_hinge.h"
+#include "sidestep/planner/planner.h"
+#include "sidestep/robot/robot_model.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// The objective of a Gaussian-process planner. Units as in the cost functions of planner/costs/.
 struct GpProblemOptions {
@@ -47,7 +47,7 @@ class GpProblem {
  public:
   /// `robot` and the request's field are borrowed. `initial` stands on the request's grid and
   /// holds its fixed states; see MakeDirectMotion and MakeWarmStart.
-  GpProblem(const RobotModel& robot, const PlanRequest& request, const Trajectory& initial,
+  GpProblem(const robot::RobotModel& robot, const PlanRequest& request, const Trajectory& initial,
             const GpProblemOptions& options);
 
   /// Adds costs that keep every free state and interval within the given fractions of the robot's
@@ -75,7 +75,7 @@ class GpProblem {
   void AddTerm(std::unique_ptr<ceres::CostFunction> cost, int state, double PlanCost::*part);
   void AddTerm(const ceres::CostFunction* cost, int state, double PlanCost::*part);
 
-  const RobotModel& robot_;
+  const robot::RobotModel& robot_;
   Eigen::VectorXd t_s_;
   double step_s_;
   Eigen::VectorXd q_start_, q_goal_;
@@ -87,4 +87,4 @@ class GpProblem {
   ceres::Problem problem_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -1,8 +1,8 @@
-#include "planner/gp_trajectory.h"
+#include "sidestep/planner/gp_trajectory.h"
 
 #include <cmath>
 
-namespace sidestep {
+namespace sidestep::planner {
 
 Eigen::Matrix2d GpTransition(double dt_s) {
   Eigen::Matrix2d Phi;
@@ -51,4 +51,4 @@ double ComputeGpCost(const Trajectory& trajectory, double qc) {
   return cost;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

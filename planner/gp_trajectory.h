@@ -2,9 +2,9 @@
 
 #include <Eigen/Core>
 
-#include "core/trajectory.h"
+#include "sidestep/core/trajectory.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// The constant-velocity Gaussian process behind every trajectory: acceleration is white noise of
 /// power spectral density Qc = qc I. All joints are alike and independent, so each matrix here is
@@ -39,4 +39,4 @@ GpInterpolation InterpolateGp(double dt_s, double tau_s);
 /// 0.1 s. Start and goal priors are not in it. 0 for a single state.
 double ComputeGpCost(const Trajectory& trajectory, double qc);
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <vector>
 
-#include "robot/robot_model.h"
+#include "sidestep/robot/robot_model.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// The spheres that obstacle costs and verdicts look at, all but mount spheres: their indices in
 /// the robot, ascending.
-inline std::vector<int> GuardedSpheres(const RobotModel& robot) {
+inline std::vector<int> GuardedSpheres(const robot::RobotModel& robot) {
   const std::vector<int>& mount = robot.mount_spheres();
   std::vector<int> guarded;
   for (int s = 0; s < robot.num_spheres(); ++s) {
@@ -18,4 +18,4 @@ inline std::vector<int> GuardedSpheres(const RobotModel& robot) {
   return guarded;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

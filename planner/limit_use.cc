@@ -1,12 +1,12 @@
-#include "planner/limit_use.h"
+#include "sidestep/planner/limit_use.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace sidestep {
+namespace sidestep::planner {
 namespace {
 
-double PositionUse(const JointLimits& limits, double q) {
+double PositionUse(const robot::JointLimits& limits, double q) {
   if (std::isinf(limits.q_max) || std::isinf(limits.q_min)) return 0;
   const double middle = (limits.q_min + limits.q_max) / 2;
   return std::abs(q - middle) / (limits.q_max - middle);
@@ -14,10 +14,11 @@ double PositionUse(const JointLimits& limits, double q) {
 
 }  // namespace
 
-LimitUse MeasureLimitUse(const RobotModel& robot, const Trajectory& trajectory, int first_state) {
+LimitUse MeasureLimitUse(const robot::RobotModel& robot, const Trajectory& trajectory,
+                         int first_state) {
   LimitUse use;
   for (int i = 0; i < robot.num_joints(); ++i) {
-    const JointLimits& limits = robot.limits()[i];
+    const robot::JointLimits& limits = robot.limits()[i];
     for (int k = first_state; k < trajectory.num_states(); ++k) {
       use.position = std::max(use.position, PositionUse(limits, trajectory.q(i, k)));
       use.velocity = std::max(use.velocity, std::abs(trajectory.v(i, k)) / limits.v_max);
@@ -39,4 +40,4 @@ LimitUse MeasureLimitUse(const RobotModel& robot, const Trajectory& trajectory, 
   return use;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

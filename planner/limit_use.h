@@ -1,9 +1,9 @@
 #pragma once
 
-#include "core/trajectory.h"
-#include "robot/robot_model.h"
+#include "sidestep/core/trajectory.h"
+#include "sidestep/robot/robot_model.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// The largest share of a robot's limits that a motion uses; above 1 it exceeds one. Infinite
 /// limits use nothing.
@@ -14,6 +14,7 @@ struct LimitUse {
 };
 
 /// From support state `first_state` to the end.
-LimitUse MeasureLimitUse(const RobotModel& robot, const Trajectory& trajectory, int first_state);
+LimitUse MeasureLimitUse(const robot::RobotModel& robot, const Trajectory& trajectory,
+                         int first_state);
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -1,11 +1,11 @@
-#include "planner/planner.h"
+#include "sidestep/planner/planner.h"
 
 #include <cmath>
 #include <stdexcept>
 
-#include "planner/clearance.h"
+#include "sidestep/planner/clearance.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 namespace {
 
 // Support states stand where they should to within this share of a step.
@@ -85,4 +85,4 @@ PlanResult Planner::MakeResult(const PlanRequest& request, const Trajectory& tra
   return result;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -4,14 +4,14 @@
 #include <optional>
 #include <string>
 
-#include "core/time.h"
-#include "core/trajectory.h"
-#include "planner/clearance.h"
-#include "planner/limit_use.h"
-#include "robot/robot_model.h"
-#include "sdf/distance_field.h"
+#include "sidestep/core/time.h"
+#include "sidestep/core/trajectory.h"
+#include "sidestep/planner/clearance.h"
+#include "sidestep/planner/limit_use.h"
+#include "sidestep/robot/robot_model.h"
+#include "sidestep/sdf/distance_field.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// What is true of the plan that was found; the first that applies, from the bottom up.
 enum class PlanStatus {
@@ -24,12 +24,12 @@ std::string ToString(PlanStatus status);
 
 /// Support states k = 0 ... num_states-1 at start + k step. References are borrowed for the call.
 struct PlanRequest {
-  const DistanceField* field = nullptr;  ///< sampled at absolute times
-  EpisodeTime start;                     ///< of support state 0
-  double step_s = 0;                     ///< between support states, > 0
-  int num_states = 0;                    ///< >= 2
-  Eigen::VectorXd q_start, v_start;      ///< shape n: state 0
-  Eigen::VectorXd q_goal;                ///< shape n; the goal velocity is zero
+  const sdf::DistanceField* field = nullptr;  ///< sampled at absolute times
+  EpisodeTime start;                          ///< of support state 0
+  double step_s = 0;                          ///< between support states, > 0
+  int num_states = 0;                         ///< >= 2
+  Eigen::VectorXd q_start, v_start;           ///< shape n: state 0
+  Eigen::VectorXd q_goal;                     ///< shape n; the goal velocity is zero
   /// The first guess: a good motion on the same grid, such as the plan that runs; its state 0 gives
   /// way to (q_start, v_start). Without one the planner makes its own guess.
   std::optional<Trajectory> initial;
@@ -61,10 +61,10 @@ class Planner {
   /// @throws std::invalid_argument for a wrong shape, a value that is not finite, no field, ...
   PlanResult Plan(const PlanRequest& request) const;
 
-  const RobotModel& robot() const { return robot_; }
+  const robot::RobotModel& robot() const { return robot_; }
 
  protected:
-  explicit Planner(const RobotModel& robot) : robot_(robot) {}
+  explicit Planner(const robot::RobotModel& robot) : robot_(robot) {}
 
   /// The result for a trajectory on the request's grid, judged; without cost and iterations.
   PlanResult MakeResult(const PlanRequest& request, const Trajectory& trajectory,
@@ -72,7 +72,7 @@ class Planner {
 
  private:
   virtual PlanResult DoPlan(const PlanRequest& request) const = 0;  // `request` has been checked.
-  RobotModel robot_;
+  robot::RobotModel robot_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -1,10 +1,10 @@
-#include "planner/planner_settings.h"
+#include "sidestep/planner/planner_settings.h"
 
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-namespace sidestep {
+namespace sidestep::planner {
 namespace {
 
 void Require(bool condition, const std::string& what) {
@@ -30,4 +30,4 @@ void CheckPlannerSettings(const PlannerSettings& settings) {
   Require(IsPositive(settings.function_tolerance), "function_tolerance must be > 0");
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// What scenario files set of a planner. Units as named; sources: the GPMP2 obstacle and GP costs.
 struct PlannerSettings {
@@ -27,4 +27,4 @@ struct PlannerSettings {
 /// @throws std::invalid_argument, naming the setting, for one out of range.
 void CheckPlannerSettings(const PlannerSettings& settings);
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -1,25 +1,25 @@
-#include "planner/registry.h"
+#include "sidestep/planner/registry.h"
 
 #include <ceres/version.h>
 
 #include <stdexcept>
 
-namespace sidestep {
+namespace sidestep::planner {
 
 #define SIDESTEP_PLANNER(name, make, file) \
-  std::unique_ptr<Planner> make(const RobotModel&, const PlannerSettings&);
-#include "planner/planners.def"
+  std::unique_ptr<Planner> make(const robot::RobotModel&, const PlannerSettings&);
+#include "sidestep/planner/planners.def"
 #undef SIDESTEP_PLANNER
 
 namespace {
 
 struct Entry {
   const char* name;
-  std::unique_ptr<Planner> (*make)(const RobotModel& robot, const PlannerSettings& settings);
+  std::unique_ptr<Planner> (*make)(const robot::RobotModel& robot, const PlannerSettings& settings);
 };
 constexpr Entry kPlanners[] = {
 #define SIDESTEP_PLANNER(name, make, file) {name, &(make)},
-#include "planner/planners.def"
+#include "sidestep/planner/planners.def"
 #undef SIDESTEP_PLANNER
 };
 
@@ -31,7 +31,7 @@ std::vector<std::string> PlannerNames() {
   return names;
 }
 
-std::unique_ptr<Planner> MakePlanner(const std::string& name, const RobotModel& robot,
+std::unique_ptr<Planner> MakePlanner(const std::string& name, const robot::RobotModel& robot,
                                      const PlannerSettings& settings) {
   CheckPlannerSettings(settings);
   std::string known;
@@ -44,4 +44,4 @@ std::unique_ptr<Planner> MakePlanner(const std::string& name, const RobotModel& 
 
 std::string CeresVersion() { return CERES_VERSION_STRING; }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "planner/planner.h"
-#include "planner/planner_settings.h"
-#include "robot/robot_model.h"
+#include "sidestep/planner/planner.h"
+#include "sidestep/planner/planner_settings.h"
+#include "sidestep/robot/robot_model.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// Version of the solver library, e.g. "2.1.0".
 std::string CeresVersion();
@@ -17,7 +17,7 @@ std::string CeresVersion();
 std::vector<std::string> PlannerNames();
 
 /// @throws std::invalid_argument for an unknown name or settings out of range.
-std::unique_ptr<Planner> MakePlanner(const std::string& name, const RobotModel& robot,
+std::unique_ptr<Planner> MakePlanner(const std::string& name, const robot::RobotModel& robot,
                                      const PlannerSettings& settings);
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

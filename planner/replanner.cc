@@ -1,4 +1,4 @@
-#include "planner/replanner.h"
+#include "sidestep/planner/replanner.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/cpu_time.h"
-#include "planner/clearance.h"
+#include "sidestep/core/cpu_time.h"
+#include "sidestep/planner/clearance.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 namespace {
 
 constexpr const char* kBraked = "braked";
@@ -43,7 +43,8 @@ bool IsFinite(const Trajectory& trajectory) {
 
 }  // namespace
 
-Replanner::Replanner(const Planner& planner, WorldModel& world, const ReplannerOptions& options)
+Replanner::Replanner(const Planner& planner, sdf::WorldModel& world,
+                     const ReplannerOptions& options)
     : planner_(planner), world_(world), options_(options) {
   const auto require = [](bool condition, const std::string& what) {
     if (!condition) throw std::invalid_argument("replanner: " + what);
@@ -61,7 +62,7 @@ Replanner::Replanner(const Planner& planner, WorldModel& world, const ReplannerO
 Replanner::Cycle Replanner::Run(EpisodeTime now, const JointState& state, HorizonOffset latency) {
   Cycle cycle;
   const double begin_s = ThreadCpuSeconds();
-  const std::shared_ptr<const DistanceField> field = world_.MakeField();
+  const std::shared_ptr<const sdf::DistanceField> field = world_.MakeField();
   const double predicted_s = ThreadCpuSeconds();
   cycle.predict_s = predicted_s - begin_s;
 
@@ -133,7 +134,7 @@ TimedPlan Replanner::WithoutNewPlan(EpisodeTime now, const JointState& state) co
 
 std::optional<PlanRequest> Replanner::MakeRequest(EpisodeTime now, const JointState& state,
                                                   EpisodeTime t_effect,
-                                                  const DistanceField& field) const {
+                                                  const sdf::DistanceField& field) const {
   if (!running_) {
     const Eigen::VectorXd rest = Eigen::VectorXd::Zero(state.q.size());
     PlanRequest request = NewHorizon(now, state.q, rest, field);
@@ -166,7 +167,7 @@ std::optional<PlanRequest> Replanner::MakeRequest(EpisodeTime now, const JointSt
 }
 
 PlanRequest Replanner::NewHorizon(EpisodeTime start, const Eigen::VectorXd& q,
-                                  const Eigen::VectorXd& v, const DistanceField& field) const {
+                                  const Eigen::VectorXd& v, const sdf::DistanceField& field) const {
   PlanRequest request;
   request.field = &field;
   request.start = start;
@@ -205,4 +206,4 @@ bool Replanner::IsOffPlan(EpisodeTime now, const JointState& state) const {
   return (state.q - planned.q).cwiseAbs().maxCoeff() > kOffPlan_rad;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -4,13 +4,13 @@
 #include <memory>
 #include <optional>
 
-#include "core/recording.h"
-#include "core/time.h"
-#include "core/trajectory.h"
-#include "planner/planner.h"
-#include "sdf/world_model.h"
+#include "sidestep/core/samples.h"
+#include "sidestep/core/time.h"
+#include "sidestep/core/trajectory.h"
+#include "sidestep/planner/planner.h"
+#include "sidestep/sdf/world_model.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
 struct ReplannerOptions {
   double horizon_s = 3;  ///< T, a multiple of step_s
@@ -47,7 +47,7 @@ struct TimedPlan {
 class Replanner {
  public:
   /// `planner` and `world` are borrowed. @throws std::invalid_argument for options out of range.
-  Replanner(const Planner& planner, WorldModel& world, const ReplannerOptions& options);
+  Replanner(const Planner& planner, sdf::WorldModel& world, const ReplannerOptions& options);
 
   struct Cycle {
     /// To be followed from record.t_effect on, if one was found. It agrees with what runs until
@@ -69,20 +69,21 @@ class Replanner {
   TimedPlan WithoutNewPlan(EpisodeTime now, const JointState& state) const;
   /// The request of this cycle; none if the running plan is to be kept.
   std::optional<PlanRequest> MakeRequest(EpisodeTime now, const JointState& state,
-                                         EpisodeTime t_effect, const DistanceField& field) const;
+                                         EpisodeTime t_effect,
+                                         const sdf::DistanceField& field) const;
   /// A whole horizon from `start`.
   PlanRequest NewHorizon(EpisodeTime start, const Eigen::VectorXd& q, const Eigen::VectorXd& v,
-                         const DistanceField& field) const;
+                         const sdf::DistanceField& field) const;
   bool IsOffPlan(EpisodeTime now, const JointState& state) const;
   /// A whole horizon from `start`: comes to rest as fast as the robot may, and stays.
   TimedPlan Brake(EpisodeTime start, const TrajectoryPoint& from) const;
 
   const Planner& planner_;
-  WorldModel& world_;
+  sdf::WorldModel& world_;
   ReplannerOptions options_;
   int num_states_;
   std::optional<TimedPlan> running_;
   bool is_braking_ = false;  // what runs leads to no goal
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -1,13 +1,13 @@
-#include "planner/self_clearance.h"
+#include "sidestep/planner/self_clearance.h"
 
 #include <algorithm>
 #include <limits>
 
-namespace sidestep {
+namespace sidestep::planner {
 
-SelfClearance::SelfClearance(const RobotModel& robot) : robot_(robot) {
-  const std::vector<CollisionSphere>& spheres = robot.spheres();
-  for (const LinkPair& links : robot.self_collision()) {
+SelfClearance::SelfClearance(const robot::RobotModel& robot) : robot_(robot) {
+  const std::vector<robot::CollisionSphere>& spheres = robot.spheres();
+  for (const robot::LinkPair& links : robot.self_collision()) {
     std::vector<std::pair<int, int>>& pairs = pairs_.emplace_back();
     for (int a = 0; a < robot.num_spheres(); ++a) {
       for (int b = 0; b < robot.num_spheres(); ++b) {
@@ -37,4 +37,4 @@ double SelfClearance::Least(const Eigen::Matrix3Xd& p_WS) const {
   return least_m;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

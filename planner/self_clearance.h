@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "robot/robot_model.h"
+#include "sidestep/robot/robot_model.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// The narrowest place between two links.
 struct LinkGap {
@@ -19,7 +19,7 @@ struct LinkGap {
 class SelfClearance {
  public:
   /// `robot` is borrowed.
-  explicit SelfClearance(const RobotModel& robot);
+  explicit SelfClearance(const robot::RobotModel& robot);
 
   int num_pairs() const { return static_cast<int>(pairs_.size()); }
   /// Of pair `pair`, in the order of self_collision(). @param p_WS all sphere centres, 3 x S.
@@ -28,8 +28,8 @@ class SelfClearance {
   double Least(const Eigen::Matrix3Xd& p_WS) const;
 
  private:
-  const RobotModel& robot_;
+  const robot::RobotModel& robot_;
   std::vector<std::vector<std::pair<int, int>>> pairs_;  // of links: the pairs of their spheres
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -1,15 +1,16 @@
-#include "planner/straight_line_planner.h"
+#include "sidestep/planner/straight_line_planner.h"
 
-#include "planner/first_guess.h"
+#include "sidestep/planner/first_guess.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
 PlanResult StraightLinePlanner::DoPlan(const PlanRequest& request) const {
   return MakeResult(request, MakeDirectMotion(request, Timing::kWholeTime), /*converged=*/true);
 }
 
-std::unique_ptr<Planner> MakeStraightLinePlanner(const RobotModel& robot, const PlannerSettings&) {
+std::unique_ptr<Planner> MakeStraightLinePlanner(const robot::RobotModel& robot,
+                                                 const PlannerSettings&) {
   return std::make_unique<StraightLinePlanner>(robot);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -2,22 +2,22 @@
 
 #include <memory>
 
-#include "planner/planner.h"
-#include "planner/planner_settings.h"
+#include "sidestep/planner/planner.h"
+#include "sidestep/planner/planner_settings.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// `straight_line`: the direct motion to the goal with a smooth timing, whatever is in its way. The
 /// yardstick for planners that look.
 class StraightLinePlanner final : public Planner {
  public:
-  explicit StraightLinePlanner(const RobotModel& robot) : Planner(robot) {}
+  explicit StraightLinePlanner(const robot::RobotModel& robot) : Planner(robot) {}
 
  private:
   PlanResult DoPlan(const PlanRequest& request) const override;
 };
 
-std::unique_ptr<Planner> MakeStraightLinePlanner(const RobotModel& robot,
+std::unique_ptr<Planner> MakeStraightLinePlanner(const robot::RobotModel& robot,
                                                  const PlannerSettings& settings);
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

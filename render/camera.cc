@@ -1,10 +1,10 @@
-#include "render/camera.h"
+#include "sidestep/render/camera.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-namespace sidestep {
+namespace sidestep::render {
 namespace {
 
 // Along one axis of the picture: where the camera may stand.
@@ -54,4 +54,4 @@ CameraView FitCamera(const Eigen::Matrix3Xd& points_m, double azimuth_rad, doubl
   return view;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::render

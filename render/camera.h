@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace sidestep {
+namespace sidestep::render {
 
 /// Where to look from, as MuJoCo's free camera has it: at `lookat_m` from `distance_m` away; the
 /// view goes towards azimuth (from x to y) and elevation (negative: down).
@@ -27,4 +27,4 @@ struct Frustum {
 CameraView FitCamera(const Eigen::Matrix3Xd& points_m, double azimuth_rad, double elevation_rad,
                      const Frustum& frustum);
 
-}  // namespace sidestep
+}  // namespace sidestep::render

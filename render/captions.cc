@@ -1,13 +1,13 @@
-#include "render/captions.h"
+#include "sidestep/render/captions.h"
 
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <optional>
 
-#include "render/timeline.h"
+#include "sidestep/render/timeline.h"
 
-namespace sidestep {
+namespace sidestep::render {
 namespace {
 
 constexpr double kNear_m = 0.05;
@@ -29,7 +29,7 @@ std::string Seconds(double seconds) {
 
 }  // namespace
 
-Title TitleOf(const Recording& recording, const std::string& fallback) {
+Title TitleOf(const record::Recording& recording, const std::string& fallback) {
   const Wording wordings[] = {
       {"static", {"Static", "saw the world once, at the start"}},
       {"execute_and_update", {"Execute and update", "re-plans around where things are now"}},
@@ -58,7 +58,7 @@ Color ColorOf(Mood mood) {
   return {};
 }
 
-Status StatusAt(const Recording& recording, EpisodeTime t) {
+Status StatusAt(const record::Recording& recording, EpisodeTime t) {
   const std::optional<Touch> touch = FirstTouch(recording);
   if (touch && touch->t <= t) {
     return {"CONTACT at " + Seconds(touch->t.seconds()) +
@@ -83,4 +83,4 @@ Status StatusAt(const Recording& recording, EpisodeTime t) {
           now->clearance_m < kNear_m ? Mood::kNear : Mood::kNeutral};
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::render

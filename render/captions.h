@@ -2,11 +2,11 @@
 
 #include <string>
 
-#include "core/recording.h"
-#include "core/time.h"
-#include "render/image.h"
+#include "sidestep/core/time.h"
+#include "sidestep/record/recording.h"
+#include "sidestep/render/image.h"
 
-namespace sidestep {
+namespace sidestep::render {
 
 /// A trace's name and, in plain words, what its planner was told about the moving world.
 struct Title {
@@ -14,7 +14,7 @@ struct Title {
   std::string explanation;  ///< may be empty
 };
 /// From the header's `knowledge`; without one, `fallback` is the name.
-Title TitleOf(const Recording& recording, const std::string& fallback);
+Title TitleOf(const record::Recording& recording, const std::string& fallback);
 
 enum class Mood { kNeutral, kGood, kNear, kBad };
 Color ColorOf(Mood mood);  ///< for a bar under white text
@@ -26,6 +26,6 @@ struct Status {
 };
 /// A contact stays in the status for good. The goal counts as reached at the metric
 /// `time_to_goal_s`.
-Status StatusAt(const Recording& recording, EpisodeTime t);
+Status StatusAt(const record::Recording& recording, EpisodeTime t);
 
-}  // namespace sidestep
+}  // namespace sidestep::render

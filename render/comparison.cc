@@ -1,4 +1,4 @@
-#include "render/comparison.h"
+#include "sidestep/render/comparison.h"
 
 #include <algorithm>
 #include <array>
@@ -6,11 +6,11 @@
 #include <cstdio>
 #include <optional>
 
-#include "core/input_error.h"
-#include "render/timeline.h"
-#include "render/view_choice.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/render/timeline.h"
+#include "sidestep/render/view_choice.h"
 
-namespace sidestep {
+namespace sidestep::render {
 namespace {
 
 constexpr Color kWhite = {255, 255, 255};
@@ -124,7 +124,7 @@ EpisodeTime Comparison::telling_moment() const {
   std::optional<EpisodeTime> first_touch;
   std::optional<Clearance> least;
   for (const Panel& panel : panels_) {
-    const Recording& recording = panel.model.recording();
+    const record::Recording& recording = panel.model.recording();
     const std::optional<Touch> touch = FirstTouch(recording);
     if (touch && (!first_touch || touch->t < *first_touch)) first_touch = touch->t;
     const std::optional<Clearance> clearance = LeastClearance(recording, end());
@@ -167,7 +167,7 @@ void Comparison::DrawLegend(Image& image) const {
 }
 
 void Comparison::DrawPanel(Image& image, Panel& panel, EpisodeTime t) const {
-  const Recording& recording = panel.model.recording();
+  const record::Recording& recording = panel.model.recording();
   const EpisodeTime own_end = EndOf(recording);
   const bool finished = t > own_end;
   const EpisodeTime own_t = std::min(t, own_end);
@@ -233,4 +233,4 @@ Image Comparison::Draw(EpisodeTime t) {
   return image;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::render

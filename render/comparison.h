@@ -5,20 +5,20 @@
 #include <string>
 #include <vector>
 
-#include "core/recording.h"
-#include "core/time.h"
-#include "render/captions.h"
-#include "render/font.h"
-#include "render/gl_context.h"
-#include "render/image.h"
-#include "render/scene_painter.h"
-#include "render/trace_model.h"
+#include "sidestep/core/time.h"
+#include "sidestep/record/recording.h"
+#include "sidestep/render/captions.h"
+#include "sidestep/render/font.h"
+#include "sidestep/render/gl_context.h"
+#include "sidestep/render/image.h"
+#include "sidestep/render/scene_painter.h"
+#include "sidestep/render/trace_model.h"
 
-namespace sidestep {
+namespace sidestep::render {
 
 struct NamedRecording {
   std::string name;  ///< for messages, and as the title of last resort
-  Recording recording;
+  record::Recording recording;
 };
 
 struct PictureOptions {
@@ -75,4 +75,4 @@ class Comparison {
   std::vector<PixelRect> empty_places_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::render

@@ -1,14 +1,14 @@
-#include "render/font.h"
+#include "sidestep/render/font.h"
 
 #include <mujoco/mujoco.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "render/mujoco_drawing.h"
-#include "sim/mujoco_model.h"
+#include "sidestep/render/mujoco_drawing.h"
+#include "sidestep/sim/mujoco_model.h"
 
-namespace sidestep {
+namespace sidestep::render {
 namespace {
 
 // An empty world whose only use is an off-screen buffer that holds the widest letter.
@@ -20,7 +20,7 @@ constexpr int kBufferWidth = 256, kBufferHeight = 160;
 }  // namespace
 
 Font::Font(const GlContext&) {
-  const MujocoModelPtr model = LoadMujocoModel(kBlankWorld, "font");
+  const sim::MujocoModelPtr model = sim::LoadMujocoModel(kBlankWorld, "font");
   const DrawingContext drawing(*model, mjFONTSCALE_300);
   const mjrContext& context = drawing.context();
   cell_height_ = context.charHeightBig;
@@ -79,4 +79,4 @@ double Font::Draw(Image& image, double x, double y, double line_height, Color co
   return x;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::render

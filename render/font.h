@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "render/gl_context.h"
-#include "render/image.h"
+#include "sidestep/render/gl_context.h"
+#include "sidestep/render/image.h"
 
-namespace sidestep {
+namespace sidestep::render {
 
 /// Smooth text of any size. The letters are those that MuJoCo carries for its own overlays: drawn
 /// once at its largest size, then averaged down. Printable ASCII; any other byte shows as '?'.
@@ -36,4 +36,4 @@ class Font {
   std::array<Glyph, kLast - kFirst + 1> glyphs_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::render

@@ -1,4 +1,4 @@
-#include "render/gl_context.h"
+#include "sidestep/render/gl_context.h"
 
 #include <GL/gl.h>
 #include <GL/osmesa.h>
@@ -6,9 +6,9 @@
 #include <array>
 #include <cstdlib>
 
-#include "core/input_error.h"
+#include "sidestep/core/input_error.h"
 
-namespace sidestep {
+namespace sidestep::render {
 namespace {
 
 // MuJoCo draws into framebuffer objects of its own; OSMesa wants a window nevertheless.
@@ -67,4 +67,4 @@ std::string DescribeGl() {
   }
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::render

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-namespace sidestep {
+namespace sidestep::render {
 
 /// An OpenGL context that draws into memory, with OSMesa: no display, no GPU, the same picture each
 /// time. While it lives it is current in the thread that made it; have one a process. Everything
@@ -29,4 +29,4 @@ class GlContext {
 /// One line for people: the OpenGL that would draw, or why none can.
 std::string DescribeGl();
 
-}  // namespace sidestep
+}  // namespace sidestep::render

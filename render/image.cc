@@ -1,10 +1,10 @@
-#include "render/image.h"
+#include "sidestep/render/image.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-namespace sidestep {
+namespace sidestep::render {
 
 Image::Image(int width, int height) : width_(width), height_(height) {
   if (width < 1 || height < 1) throw std::invalid_argument("Image: sizes must be >= 1");
@@ -58,4 +58,4 @@ void Image::Paste(const Image& other, int x, int y) {
   }
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::render

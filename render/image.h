@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace sidestep {
+namespace sidestep::render {
 
 struct Color {
   std::uint8_t r = 0, g = 0, b = 0;
@@ -48,4 +48,4 @@ class Image {
   std::vector<std::uint8_t> bytes_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::render

@@ -1,10 +1,10 @@
-#include "render/mujoco_drawing.h"
+#include "sidestep/render/mujoco_drawing.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <vector>
 
-namespace sidestep {
+namespace sidestep::render {
 
 DrawingContext::DrawingContext(const mjModel& model, mjtFontScale font_scale) {
   mjr_defaultContext(&context_);
@@ -40,4 +40,4 @@ Scene::Scene(const mjModel& model, int max_geoms) {
 
 Scene::~Scene() { mjv_freeScene(&scene_); }
 
-}  // namespace sidestep
+}  // namespace sidestep::render

@@ -2,9 +2,9 @@
 
 #include <mujoco/mujoco.h>
 
-#include "render/image.h"
+#include "sidestep/render/image.h"
 
-namespace sidestep {
+namespace sidestep::render {
 
 /// What MuJoCo keeps on the graphics side for one model; draws into its off-screen buffer, whose
 /// size is the model's vis.global.offwidth x offheight. Needs a GlContext that outlives it.
@@ -45,4 +45,4 @@ class Scene {
   mjvScene scene_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::render

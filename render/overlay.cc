@@ -1,4 +1,4 @@
-#include "render/overlay.h"
+#include "sidestep/render/overlay.h"
 
 #include <GL/gl.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace sidestep {
+namespace sidestep::render {
 namespace {
 
 Eigen::Vector3d ToVector(const float* values) { return {values[0], values[1], values[2]}; }
@@ -121,4 +121,4 @@ void Overlay::DrawSpot(const Eigen::Vector3d& p_W, double radius_m, Color color)
   glEnable(GL_DEPTH_TEST);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::render

@@ -4,10 +4,10 @@
 
 #include <Eigen/Core>
 
-#include "core/pose.h"
-#include "render/image.h"
+#include "sidestep/core/pose.h"
+#include "sidestep/render/image.h"
 
-namespace sidestep {
+namespace sidestep::render {
 
 /// Draws signs into the picture of a scene: things to be told apart from the world, so they have
 /// neither light nor shadow, but the world hides what lies behind it. Make one after MuJoCo drew
@@ -31,4 +31,4 @@ class Overlay {
   Eigen::Vector3d right_, up_;  // of the camera
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::render

@@ -1,13 +1,13 @@
-#include "render/scene_painter.h"
+#include "sidestep/render/scene_painter.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "core/input_error.h"
-#include "sim/mujoco_pose.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/sim/mujoco_pose.h"
 
-namespace sidestep {
+namespace sidestep::render {
 namespace {
 
 constexpr int kMaxGeoms = 2000;
@@ -106,7 +106,7 @@ void ScenePainter::DrawContactBoxes(Overlay& overlay) const {
         model.geom_type[geom] != mjGEOM_BOX) {
       continue;
     }
-    overlay.DrawBox(GeomPose(trace_.data(), geom),
+    overlay.DrawBox(sim::GeomPose(trace_.data(), geom),
                     Eigen::Map<const Eigen::Vector3d>(model.geom_size + 3 * geom), kGlass, 0.06,
                     0.55);
   }
@@ -207,4 +207,4 @@ Image ScenePainter::Draw(EpisodeTime t) {
   return drawing_.Read();
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::render

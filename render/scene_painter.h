@@ -2,15 +2,15 @@
 
 #include <string>
 
-#include "render/camera.h"
-#include "render/gl_context.h"
-#include "render/image.h"
-#include "render/mujoco_drawing.h"
-#include "render/overlay.h"
-#include "render/timeline.h"
-#include "render/trace_model.h"
+#include "sidestep/render/camera.h"
+#include "sidestep/render/gl_context.h"
+#include "sidestep/render/image.h"
+#include "sidestep/render/mujoco_drawing.h"
+#include "sidestep/render/overlay.h"
+#include "sidestep/render/timeline.h"
+#include "sidestep/render/trace_model.h"
 
-namespace sidestep {
+namespace sidestep::render {
 
 /// What colours mean, in the scene as in the legend.
 inline constexpr Color kPlanColor = {38, 145, 255};
@@ -50,4 +50,4 @@ class ScenePainter {
   double shadow_radius_m_ = 0;  // zero: leave the lights where the model has them
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::render

@@ -1,9 +1,9 @@
-#include "render/timeline.h"
+#include "sidestep/render/timeline.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace sidestep {
+namespace sidestep::render {
 namespace {
 
 // Where `t` falls among increasing times: between `before` and `after`, `share` of the way.
@@ -42,14 +42,14 @@ Touch TouchOf(const TruthSample& sample) {
 
 }  // namespace
 
-EpisodeTime EndOf(const Recording& recording) {
+EpisodeTime EndOf(const record::Recording& recording) {
   EpisodeTime end;
   if (!recording.control.empty()) end = std::max(end, recording.control.back().t);
   if (!recording.truth.empty()) end = std::max(end, recording.truth.back().t);
   return end;
 }
 
-Eigen::VectorXd JointsAt(const Recording& recording, EpisodeTime t) {
+Eigen::VectorXd JointsAt(const record::Recording& recording, EpisodeTime t) {
   const Position at = Locate(recording.control, t, TimeOfSample<ControlSample>);
   const Eigen::VectorXd& q0 = recording.control[at.before].q;
   return q0 + at.share * (recording.control[at.after].q - q0);
@@ -60,7 +60,7 @@ Pose PoseAt(const std::vector<EpisodeTime>& times, const std::vector<Pose>& pose
   return Between(poses[at.before], poses[at.after], at.share);
 }
 
-std::vector<Pose> ObstaclesAt(const Recording& recording, EpisodeTime t) {
+std::vector<Pose> ObstaclesAt(const record::Recording& recording, EpisodeTime t) {
   std::vector<Pose> poses;
   if (recording.truth.empty()) return poses;
   const Position at = Locate(recording.truth, t, TimeOfSample<TruthSample>);
@@ -72,7 +72,7 @@ std::vector<Pose> ObstaclesAt(const Recording& recording, EpisodeTime t) {
   return poses;
 }
 
-double ObstacleSpeedAt(const Recording& recording, EpisodeTime t) {
+double ObstacleSpeedAt(const record::Recording& recording, EpisodeTime t) {
   constexpr HorizonOffset kHalfWindow(0.025);
   const EpisodeTime begin = std::max(EpisodeTime(0), t - kHalfWindow);
   const EpisodeTime end = std::min(EndOf(recording), t + kHalfWindow);
@@ -86,7 +86,7 @@ double ObstacleSpeedAt(const Recording& recording, EpisodeTime t) {
   return distance_m / (end - begin).seconds();
 }
 
-const CycleRecord* CycleInForce(const Recording& recording, EpisodeTime t) {
+const CycleRecord* CycleInForce(const record::Recording& recording, EpisodeTime t) {
   const CycleRecord* in_force = nullptr;
   for (const CycleRecord& cycle : recording.cycles) {
     if (cycle.accepted && cycle.plan.num_states() > 0 && cycle.t_effect <= t) in_force = &cycle;
@@ -94,14 +94,14 @@ const CycleRecord* CycleInForce(const Recording& recording, EpisodeTime t) {
   return in_force;
 }
 
-std::optional<Clearance> ClearanceAt(const Recording& recording, EpisodeTime t) {
+std::optional<Clearance> ClearanceAt(const record::Recording& recording, EpisodeTime t) {
   if (recording.truth.empty()) return std::nullopt;
   const TruthSample& sample =
       recording.truth[Locate(recording.truth, t, TimeOfSample<TruthSample>).before];
   return Clearance{sample.t, sample.clearance_m};
 }
 
-std::optional<Clearance> LeastClearance(const Recording& recording, EpisodeTime t) {
+std::optional<Clearance> LeastClearance(const record::Recording& recording, EpisodeTime t) {
   std::optional<Clearance> least;
   for (const TruthSample& sample : recording.truth) {
     if (sample.t > t) break;
@@ -110,14 +110,15 @@ std::optional<Clearance> LeastClearance(const Recording& recording, EpisodeTime 
   return least;
 }
 
-std::optional<Touch> FirstTouch(const Recording& recording) {
+std::optional<Touch> FirstTouch(const record::Recording& recording) {
   for (const TruthSample& sample : recording.truth) {
     if (sample.in_contact) return TouchOf(sample);
   }
   return std::nullopt;
 }
 
-std::optional<Touch> TouchWithin(const Recording& recording, EpisodeTime t, HorizonOffset window) {
+std::optional<Touch> TouchWithin(const record::Recording& recording, EpisodeTime t,
+                                 HorizonOffset window) {
   std::optional<Touch> latest;
   for (const TruthSample& sample : recording.truth) {
     if (!sample.in_contact) continue;
@@ -127,4 +128,4 @@ std::optional<Touch> TouchWithin(const Recording& recording, EpisodeTime t, Hori
   return latest;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::render

@@ -1,13 +1,13 @@
-#include "render/trace_model.h"
+#include "sidestep/render/trace_model.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/input_error.h"
-#include "core/trajectory.h"
-#include "render/timeline.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/core/trajectory.h"
+#include "sidestep/render/timeline.h"
 
-namespace sidestep {
+namespace sidestep::render {
 namespace {
 
 constexpr double kTrailStep_s = 0.01;
@@ -22,13 +22,13 @@ bool IsInSubtree(const mjModel& model, int body, int root) {
 
 }  // namespace
 
-TraceModel::TraceModel(const Recording& recording, const std::string& name)
+TraceModel::TraceModel(const record::Recording& recording, const std::string& name)
     : recording_(recording), name_(name) {
   if (recording.control.empty()) throw InputError(name, "holds no motion, so nothing to draw");
   if (recording.joints.empty()) throw InputError(name, "names no joints, so nothing to draw");
   if (recording.model_xml.empty()) throw InputError(name, "holds no model, so nothing to draw");
-  model_ = LoadMujocoModel(recording.model_xml, name + ": model_xml");
-  data_ = MakeMujocoData(*model_);
+  model_ = sim::LoadMujocoModel(recording.model_xml, name + ": model_xml");
+  data_ = sim::MakeMujocoData(*model_);
   int last_joint = 0;
   for (const std::string& joint : recording.joints) {
     const int id = mj_name2id(model_.get(), mjOBJ_JOINT, joint.c_str());
@@ -147,4 +147,4 @@ Eigen::Matrix3Xd TraceModel::TipPlan(const CycleRecord& cycle, EpisodeTime t) {
   return path;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::render

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "core/recording.h"
-#include "core/time.h"
-#include "sim/mujoco_model.h"
+#include "sidestep/core/time.h"
+#include "sidestep/record/recording.h"
+#include "sidestep/sim/mujoco_model.h"
 
-namespace sidestep {
+namespace sidestep::render {
 
 /// The world of one recording, which can be set to any of its moments. Nothing is simulated: joints
 /// and obstacles are put where the recording says they were.
@@ -19,11 +19,11 @@ class TraceModel {
   /// Keeps a reference to `recording`, which must outlive it.
   /// @param name stands for the recording in messages.
   /// @throws InputError if there is nothing to draw, or model and recording do not fit together.
-  TraceModel(const Recording& recording, const std::string& name);
+  TraceModel(const record::Recording& recording, const std::string& name);
 
   void MoveTo(EpisodeTime t);
 
-  const Recording& recording() const { return recording_; }
+  const record::Recording& recording() const { return recording_; }
   const std::string& name() const { return name_; }
   mjModel& model() { return *model_; }
   const mjModel& model() const { return *model_; }
@@ -48,10 +48,10 @@ class TraceModel {
   void FindTip();
   void RecordTrail();
 
-  const Recording& recording_;
+  const record::Recording& recording_;
   std::string name_;
-  MujocoModelPtr model_;
-  MujocoDataPtr data_;
+  sim::MujocoModelPtr model_;
+  sim::MujocoDataPtr data_;
   std::vector<int> joint_addresses_;  // of each joint, in qpos
   std::vector<int> obstacle_bodies_;  // of each obstacle
   int robot_root_ = 0;                // the robot's body below the world
@@ -60,4 +60,4 @@ class TraceModel {
   Eigen::Matrix3Xd trail_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::render

@@ -1,11 +1,11 @@
-#include "render/video.h"
+#include "sidestep/render/video.h"
 
 #include <cmath>
 
-#include "core/input_error.h"
-#include "render/video_writer.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/render/video_writer.h"
 
-namespace sidestep {
+namespace sidestep::render {
 
 int RenderVideo(Comparison& comparison, const std::string& path, const VideoOptions& options,
                 const RenderProgress& progress) {
@@ -29,4 +29,4 @@ void RenderStill(Comparison& comparison, const std::string& path, std::optional<
   WritePng(comparison.Draw(t.value_or(comparison.telling_moment())), path);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::render

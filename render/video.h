@@ -4,10 +4,10 @@
 #include <optional>
 #include <string>
 
-#include "core/time.h"
-#include "render/comparison.h"
+#include "sidestep/core/time.h"
+#include "sidestep/render/comparison.h"
 
-namespace sidestep {
+namespace sidestep::render {
 
 /// Whether to go on after `done` of `total` frames.
 using RenderProgress = std::function<bool(int done, int total)>;
@@ -26,4 +26,4 @@ int RenderVideo(Comparison& comparison, const std::string& path, const VideoOpti
 /// Writes one picture as PNG: at `t`, or at the moment that tells most.
 void RenderStill(Comparison& comparison, const std::string& path, std::optional<EpisodeTime> t);
 
-}  // namespace sidestep
+}  // namespace sidestep::render

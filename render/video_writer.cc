@@ -1,4 +1,4 @@
-#include "render/video_writer.h"
+#include "sidestep/render/video_writer.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -17,9 +17,9 @@ extern "C" {
 #include <fstream>
 #include <stdexcept>
 
-#include "core/input_error.h"
+#include "sidestep/core/input_error.h"
 
-namespace sidestep {
+namespace sidestep::render {
 namespace {
 
 struct AvDeleter {
@@ -236,4 +236,4 @@ void WritePng(const Image& image, const std::string& path) {
   Rename(temporary, path);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::render

@@ -3,9 +3,9 @@
 #include <memory>
 #include <string>
 
-#include "render/image.h"
+#include "sidestep/render/image.h"
 
-namespace sidestep {
+namespace sidestep::render {
 
 /// Writes an MP4 file: H.264, yuv420p (BT.709), the index in front so that it plays while it loads.
 /// Equal frames give equal bytes. The file appears under its name when Finish() succeeds.
@@ -36,4 +36,4 @@ std::string VideoEncoder();
 /// Writes one image as PNG. @throws InputError if it cannot be written.
 void WritePng(const Image& image, const std::string& path);
 
-}  // namespace sidestep
+}  // namespace sidestep::render

@@ -1,4 +1,4 @@
-#include "render/view_choice.h"
+#include "sidestep/render/view_choice.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -6,10 +6,10 @@
 #include <limits>
 #include <numbers>
 
-#include "render/timeline.h"
-#include "sim/mujoco_pose.h"
+#include "sidestep/render/timeline.h"
+#include "sidestep/sim/mujoco_pose.h"
 
-namespace sidestep {
+namespace sidestep::render {
 namespace {
 
 constexpr double kStep_s = 0.25;
@@ -43,7 +43,7 @@ Eigen::Vector3d HalfExtents(const mjModel& model, int geom) {
 
 void AppendCorners(const TraceModel& trace, int geom, Points* points) {
   const Eigen::Vector3d half = HalfExtents(trace.model(), geom);
-  const Pose X_WG = GeomPose(trace.data(), geom);
+  const Pose X_WG = sim::GeomPose(trace.data(), geom);
   for (int corner = 0; corner < 8; ++corner) {
     const Eigen::Vector3d sign((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1,
                                (corner & 4) != 0 ? 1 : -1);
@@ -97,7 +97,7 @@ Eigen::Vector3d RobotPosition(const TraceModel& trace) {
   int count = 0;
   for (int geom = 0; geom < trace.model().ngeom; ++geom) {
     if (!trace.IsRobot(geom)) continue;
-    sum += GeomPosition(trace.data(), geom);
+    sum += sim::GeomPosition(trace.data(), geom);
     ++count;
   }
   return count == 0 ? sum : Eigen::Vector3d(sum / count);
@@ -147,10 +147,10 @@ bool MeetsBox(const Eigen::Vector3d& from, const Eigen::Vector3d& direction, con
 // two would be hard to tell apart.
 bool StandsOut(const TraceModel& trace, int geom, const Eigen::Vector3d& from) {
   const mjModel& model = trace.model();
-  const Eigen::Vector3d ray = GeomPosition(trace.data(), geom) - from;
+  const Eigen::Vector3d ray = sim::GeomPosition(trace.data(), geom) - from;
   for (int other = 0; other < model.ngeom; ++other) {
     if (trace.ObstacleOf(other) >= 0 &&
-        MeetsBox(from, ray, GeomPose(trace.data(), other), HalfExtents(model, other))) {
+        MeetsBox(from, ray, sim::GeomPose(trace.data(), other), HalfExtents(model, other))) {
       return false;
     }
   }
@@ -241,4 +241,4 @@ CameraView ChooseView(const std::vector<TraceModel*>& traces, const Frustum& fru
   return views[best];
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::render

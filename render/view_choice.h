@@ -2,10 +2,10 @@
 
 #include <vector>
 
-#include "render/camera.h"
-#include "render/trace_model.h"
+#include "sidestep/render/camera.h"
+#include "sidestep/render/trace_model.h"
 
-namespace sidestep {
+namespace sidestep::render {
 
 /// Chooses one view for all traces, from what they show in their first 3 s: the arms throughout,
 /// everything that stands, and each obstacle from 0.7 s before until 0.4 s after it passes. Among
@@ -14,4 +14,4 @@ namespace sidestep {
 /// Moves the traces to other moments.
 CameraView ChooseView(const std::vector<TraceModel*>& traces, const Frustum& frustum);
 
-}  // namespace sidestep
+}  // namespace sidestep::render

@@ -2,11 +2,11 @@
 
 #include <vector>
 
-#include "core/recording.h"
-#include "core/time.h"
-#include "core/trajectory.h"
+#include "sidestep/core/samples.h"
+#include "sidestep/core/time.h"
+#include "sidestep/core/trajectory.h"
 
-namespace sidestep {
+namespace sidestep::robot {
 
 /// A robot that follows trajectories, simulated or real. One thread at a time.
 class RobotInterface {
@@ -32,4 +32,4 @@ class RobotInterface {
   virtual std::vector<ControlSample> TakeControlLog() = 0;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::robot

@@ -1,4 +1,4 @@
-#include "robot/robot_model.h"
+#include "sidestep/robot/robot_model.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,10 +8,10 @@
 #include <limits>
 #include <stdexcept>
 
-#include "core/input_error.h"
-#include "core/yaml_reader.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/core/yaml_reader.h"
 
-namespace sidestep {
+namespace sidestep::robot {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -275,4 +275,4 @@ SphereCenters RobotModel::ComputeSphereCenters(const Eigen::VectorXd& q, bool wi
   return result;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::robot

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "core/pose.h"
+#include "sidestep/core/pose.h"
 
-namespace sidestep {
+namespace sidestep::robot {
 
 /// Limits of one joint (rad, rad/s, rad/s^2, rad/s^3, N m). Infinite where robot.yaml gives none.
 struct JointLimits {
@@ -113,4 +113,4 @@ class RobotModel {
   Eigen::VectorXd stiffness_, damping_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::robot

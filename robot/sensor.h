@@ -2,9 +2,9 @@
 
 #include <optional>
 
-#include "core/observations.h"
+#include "sidestep/core/observations.h"
 
-namespace sidestep {
+namespace sidestep::robot {
 
 /// Something that sees the world, at its own rate.
 class Sensor {
@@ -20,4 +20,4 @@ class Sensor {
   virtual std::optional<Scan> Read() = 0;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::robot

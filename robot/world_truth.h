@@ -2,11 +2,11 @@
 
 #include <vector>
 
-#include "core/observations.h"
-#include "core/recording.h"
-#include "core/time.h"
+#include "sidestep/core/observations.h"
+#include "sidestep/core/samples.h"
+#include "sidestep/core/time.h"
 
-namespace sidestep {
+namespace sidestep::robot {
 
 /// What a simulator knows and a real world does not tell. Absent on hardware.
 class WorldTruth {
@@ -20,4 +20,4 @@ class WorldTruth {
   virtual std::vector<TruthSample> TakeSamples() = 0;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::robot

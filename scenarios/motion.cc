@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <random>
 
-#include "scenarios/scenario.h"
+#include "sidestep/scenarios/scenario.h"
 
-namespace sidestep {
+namespace sidestep::scenarios {
 namespace {
 
 // How long a motion has been under way at t.
@@ -73,4 +73,4 @@ Pose PoseAt(const MovingObstacle& obstacle, EpisodeTime t) {
   return Pose::FromRollPitchYaw(obstacle.rpy_rad, p_WO);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::scenarios

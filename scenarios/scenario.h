@@ -7,14 +7,14 @@
 #include <variant>
 #include <vector>
 
-#include "core/grid.h"
-#include "core/input_error.h"
-#include "core/pose.h"
-#include "core/shape.h"
-#include "core/time.h"
-#include "scenarios/sensor_settings.h"
+#include "sidestep/core/grid.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/core/pose.h"
+#include "sidestep/core/shape.h"
+#include "sidestep/core/time.h"
+#include "sidestep/scenarios/sensor_settings.h"
 
-namespace sidestep {
+namespace sidestep::scenarios {
 
 /// The planner's margin is at most so many cells of the workspace; it pads objects' fields.
 inline constexpr int kMaxMarginCells = 256;
@@ -162,4 +162,4 @@ std::map<std::string, std::vector<std::string>> ScenarioChoices(const std::strin
 /// The scenario as YAML that ParseScenario reads back to an equal value.
 std::string ToYaml(const Scenario& scenario);
 
-}  // namespace sidestep
+}  // namespace sidestep::scenarios

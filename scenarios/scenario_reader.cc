@@ -4,11 +4,11 @@
 #include <limits>
 #include <set>
 
-#include "core/input_error.h"
-#include "core/yaml_reader.h"
-#include "scenarios/scenario.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/core/yaml_reader.h"
+#include "sidestep/scenarios/scenario.h"
 
-namespace sidestep {
+namespace sidestep::scenarios {
 namespace {
 
 // A field of 512^3 floats takes 512 MiB; more than that is a slip of the pen, not a workspace.
@@ -449,4 +449,4 @@ std::map<std::string, std::vector<std::string>> ScenarioChoices(const std::strin
   return options;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::scenarios

@@ -1,9 +1,9 @@
 #include <cmath>
 
-#include "scenarios/scenario.h"
-#include "scenarios/yaml_text.h"
+#include "sidestep/scenarios/scenario.h"
+#include "sidestep/scenarios/yaml_text.h"
 
-namespace sidestep {
+namespace sidestep::scenarios {
 namespace {
 
 Eigen::Vector3d RollPitchYaw(const Pose& pose) {
@@ -160,4 +160,4 @@ std::string ToYaml(const Scenario& scenario) {
   return text;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::scenarios

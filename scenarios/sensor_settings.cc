@@ -1,9 +1,9 @@
-#include "scenarios/sensor_settings.h"
+#include "sidestep/scenarios/sensor_settings.h"
 
-#include "core/yaml_reader.h"
-#include "scenarios/yaml_text.h"
+#include "sidestep/core/yaml_reader.h"
+#include "sidestep/scenarios/yaml_text.h"
 
-namespace sidestep {
+namespace sidestep::scenarios {
 namespace {
 
 // Bounds against slips of the pen, generous for any sensor.
@@ -123,4 +123,4 @@ std::string ToYaml(const SensorSettings& settings) {
   return text;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::scenarios

@@ -5,7 +5,9 @@
 #include <optional>
 #include <string>
 
-namespace sidestep {
+#include "sidestep/core/yaml_reader.h"
+
+namespace sidestep::scenarios {
 
 /// What an occupancy sensor gets wrong.
 struct OccupancyNoise {
@@ -54,12 +56,10 @@ struct SensorSettings {
   int line = 0;  ///< of `sensor` in the file, for whoever judges what fits the name
 };
 
-class YamlReader;
-
 /// Reads the map `sensor`. @throws InputError FILE:LINE: KEY: WHY.
 SensorSettings ReadSensorSettings(const YamlReader& sensor);
 
 /// The lines of YAML that ReadSensorSettings reads back to an equal value, with `sensor:` on top.
 std::string ToYaml(const SensorSettings& settings);
 
-}  // namespace sidestep
+}  // namespace sidestep::scenarios

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <string>
 
-namespace sidestep {
+namespace sidestep::scenarios {
 
 /// The shortest text that reads back to the same double.
 inline std::string Number(double value) {
@@ -30,4 +30,4 @@ inline std::string Quoted(const std::string& text) {
   return "\"" + quoted + "\"";
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::scenarios

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// Gives memory at cache lines, and leaves numbers in it as they are until they are written.
 template <class T>
@@ -41,4 +41,4 @@ class AlignedAllocator {
 template <class T>
 using AlignedVector = std::vector<T, AlignedAllocator<T>>;
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

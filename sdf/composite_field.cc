@@ -1,4 +1,4 @@
-#include "sdf/composite_field.h"
+#include "sidestep/sdf/composite_field.h"
 
 #include <algorithm>
 #include <limits>
@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 double LowestAtItsBorder(const SdfGrid& field) {
@@ -82,4 +82,4 @@ void CompositeField::SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime t,
   At(t).SampleMany(p_WQ, samples);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

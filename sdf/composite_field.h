@@ -4,13 +4,13 @@
 #include <memory>
 #include <vector>
 
-#include "core/pose.h"
-#include "core/time.h"
-#include "sdf/distance_field.h"
-#include "sdf/map/sdf_grid.h"
-#include "sdf/placed_composite.h"
+#include "sidestep/core/pose.h"
+#include "sidestep/core/time.h"
+#include "sidestep/sdf/distance_field.h"
+#include "sidestep/sdf/map/sdf_grid.h"
+#include "sidestep/sdf/placed_composite.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// A rigid thing that moves: the field of its shape in its own frame O, and where O is at a time.
 struct MovingField {
@@ -61,4 +61,4 @@ class CompositeField final : public DistanceField {
   double max_distance_m_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

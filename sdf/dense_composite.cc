@@ -1,4 +1,4 @@
-#include "sdf/dense_composite.h"
+#include "sidestep/sdf/dense_composite.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 using Overlap = DenseSteps::Overlap;
@@ -104,4 +104,4 @@ std::span<const float> DenseSteps::At(EpisodeTime t) {
   return distance_m_;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

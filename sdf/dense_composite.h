@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "core/time.h"
-#include "sdf/aligned_vector.h"
-#include "sdf/composite_field.h"
-#include "sdf/map/sdf_grid.h"
+#include "sidestep/core/time.h"
+#include "sidestep/sdf/aligned_vector.h"
+#include "sidestep/sdf/composite_field.h"
+#include "sidestep/sdf/map/sdf_grid.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// The composite field as a grid, for one time: a copy of the static grid, lowered by each object's
 /// field where that reaches, with the object moved to the nearest whole cell. It is what the
@@ -54,4 +54,4 @@ class DenseSteps {
   std::vector<Overlap> lowered_;  // by the objects, in distance_m_
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

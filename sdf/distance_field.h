@@ -2,9 +2,9 @@
 
 #include <Eigen/Core>
 
-#include "core/time.h"
+#include "sidestep/core/time.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// What a field says of one point.
 struct DistanceSample {
@@ -45,4 +45,4 @@ class DistanceField {
   virtual double max_distance_m() const = 0;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -1,4 +1,4 @@
-#include "sdf/field_kernels.h"
+#include "sidestep/sdf/field_kernels.h"
 
 #include <cstring>
 #include <limits>
@@ -6,12 +6,12 @@
 // Highway compiles what follows once for each instruction set, each time in a namespace of its own;
 // the end of the file picks one of them at run time.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "sdf/field_kernels.cc"
+#define HWY_TARGET_INCLUDE "sidestep/sdf/field_kernels.cc"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace sidestep::field_kernels {
+namespace sidestep::sdf::field_kernels {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -194,11 +194,11 @@ void FindNearBoxes(const Boxes& boxes, const std::array<float, 3>& p_m, float re
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace sidestep::field_kernels
+}  // namespace sidestep::sdf::field_kernels
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sidestep::field_kernels {
+namespace sidestep::sdf::field_kernels {
 
 HWY_EXPORT(SampleStaticBlock);
 HWY_EXPORT(LowerBlock);
@@ -239,5 +239,5 @@ void FindNear(const Boxes& boxes, const std::array<float, 3>& p_m, float reach_m
   HWY_DYNAMIC_DISPATCH(FindNearBoxes)(boxes, p_m, reach_m, bits);
 }
 
-}  // namespace sidestep::field_kernels
+}  // namespace sidestep::sdf::field_kernels
 #endif  // HWY_ONCE

@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <span>
 
-#include "sdf/map/sdf_grid.h"
+#include "sidestep/sdf/map/sdf_grid.h"
 
 /// The SIMD half of PlacedComposite: plain structs and three functions, compiled for several
 /// instruction sets. Each does for a block of points, a vector at a time, what SdfGrid::Sample and
 /// PlacedComposite::Sample do for one: the same operations in the same order, hence the same bits.
 /// Only placed_composite.cc includes this file.
-namespace sidestep::field_kernels {
+namespace sidestep::sdf::field_kernels {
 
 /// A grid, ready to be interpolated.
 struct Grid {
@@ -64,4 +64,4 @@ struct Boxes {
 void FindNear(const Boxes& boxes, const std::array<float, 3>& p_m, float reach_m,
               std::span<std::uint64_t> bits);
 
-}  // namespace sidestep::field_kernels
+}  // namespace sidestep::sdf::field_kernels

@@ -1,11 +1,11 @@
-#include "sdf/grid_field.h"
+#include "sidestep/sdf/grid_field.h"
 
 #include <stdexcept>
 #include <utility>
 
-#include "sdf/placed_composite.h"
+#include "sidestep/sdf/placed_composite.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 GridField::GridField(std::shared_ptr<const SdfGrid> grid_W, double max_distance_m)
     : grid_W_(std::move(grid_W)), max_distance_m_(max_distance_m) {
@@ -23,4 +23,4 @@ void GridField::SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime,
   PlacedComposite(*grid_W_, {}, max_distance_m_).SampleMany(p_WQ, samples);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -2,10 +2,10 @@
 
 #include <memory>
 
-#include "sdf/distance_field.h"
-#include "sdf/map/sdf_grid.h"
+#include "sidestep/sdf/distance_field.h"
+#include "sidestep/sdf/map/sdf_grid.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// A world that does not move: one signed-distance grid in W, clamped.
 class GridField final : public DistanceField {
@@ -23,4 +23,4 @@ class GridField final : public DistanceField {
   double max_distance_m_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

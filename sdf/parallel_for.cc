@@ -1,4 +1,4 @@
-#include "sdf/parallel_for.h"
+#include "sidestep/sdf/parallel_for.h"
 
 #include <algorithm>
 #include <atomic>
@@ -12,7 +12,7 @@
 #include <tbb/parallel_for.h>
 #endif
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 // Calls work(0) ... work(num_workers - 1), at the same time as far as there are threads.
@@ -40,4 +40,4 @@ void RunParallelFor(int num_threads, int count, const ParallelBody& body) {
   });
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

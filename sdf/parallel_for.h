@@ -1,6 +1,6 @@
 #pragma once
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// A call of body(worker, index) without its type.
 struct ParallelBody {
@@ -27,4 +27,4 @@ void ParallelFor(int num_threads, int count, const Body& body) {
                                       }});
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -1,10 +1,10 @@
-#include "sdf/placed_composite.h"
+#include "sidestep/sdf/placed_composite.h"
 
 #include <algorithm>
 #include <bit>
 #include <limits>
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 using field_kernels::Block;
@@ -266,4 +266,4 @@ void PlacedComposite::SampleMany(const PointColumns& p_WQ, SampleColumns& sample
   }
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

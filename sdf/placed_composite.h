@@ -6,13 +6,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/pose.h"
-#include "sdf/aligned_vector.h"
-#include "sdf/distance_field.h"
-#include "sdf/field_kernels.h"
-#include "sdf/map/sdf_grid.h"
+#include "sidestep/core/pose.h"
+#include "sidestep/sdf/aligned_vector.h"
+#include "sidestep/sdf/distance_field.h"
+#include "sidestep/sdf/field_kernels.h"
+#include "sidestep/sdf/map/sdf_grid.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// Where an object's field has something to say: outside the box, the field is nowhere lower than
 /// the distance to the box less `slack_m`.
@@ -91,4 +91,4 @@ class PlacedComposite {
   std::array<AlignedVector<float>, 7> box_lanes_;  // of many objects: see field_kernels::Boxes
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "core/cpu_time.h"
+#include "sidestep/core/cpu_time.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// Measures the CPU time of stages on this thread, for reports. Nothing may depend on it.
 class Stopwatch {
@@ -19,4 +19,4 @@ class Stopwatch {
   double start_s_ = ThreadCpuSeconds();
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -1,4 +1,4 @@
-#include "sdf/world_model.h"
+#include "sidestep/sdf/world_model.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -8,17 +8,17 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sdf/composite_field.h"
-#include "sdf/grid_field.h"
-#include "sdf/map/cells_near.h"
-#include "sdf/map/object_field.h"
-#include "sdf/map/static_map.h"
-#include "sdf/prediction/registry.h"
-#include "sdf/stopwatch.h"
-#include "sdf/tracking/named_objects.h"
-#include "sdf/tracking/object_tracker.h"
+#include "sidestep/sdf/composite_field.h"
+#include "sidestep/sdf/grid_field.h"
+#include "sidestep/sdf/map/cells_near.h"
+#include "sidestep/sdf/map/object_field.h"
+#include "sidestep/sdf/map/static_map.h"
+#include "sidestep/sdf/prediction/registry.h"
+#include "sidestep/sdf/stopwatch.h"
+#include "sidestep/sdf/tracking/named_objects.h"
+#include "sidestep/sdf/tracking/object_tracker.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 // What all kinds of knowledge share: the order of scans, the grid, the static map, the clock.
@@ -302,4 +302,4 @@ std::unique_ptr<WorldModel> MakeWorldModel(const WorldModelOptions& options) {
   throw std::invalid_argument("WorldModel: not a kind of knowledge");
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -5,15 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "core/grid.h"
-#include "core/observations.h"
-#include "core/recording.h"
-#include "core/time.h"
-#include "sdf/distance_field.h"
-#include "sdf/map/distance_transform.h"
-#include "sdf/map/scan_map.h"
+#include "sidestep/core/grid.h"
+#include "sidestep/core/observations.h"
+#include "sidestep/core/samples.h"
+#include "sidestep/core/time.h"
+#include "sidestep/sdf/distance_field.h"
+#include "sidestep/sdf/map/distance_transform.h"
+#include "sidestep/sdf/map/scan_map.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// What the planner is told about the moving world.
 enum class Knowledge {
@@ -80,4 +80,4 @@ class WorldModel {
 /// full_knowledge without true_obstacles.
 std::unique_ptr<WorldModel> MakeWorldModel(const WorldModelOptions& options);
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "core/time.h"
-#include "sim/world.h"
+#include "sidestep/core/time.h"
+#include "sidestep/sim/world.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 
 /// When a sensor of a fixed rate captures: capture k is due at k / rate, rounded up to a tick of
 /// the world, so that the world is exactly then what the scan says. Captures that were missed are
@@ -36,4 +36,4 @@ class CaptureClock {
   std::int64_t next_ = 0;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

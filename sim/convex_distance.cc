@@ -1,10 +1,10 @@
-#include "sim/convex_distance.h"
+#include "sidestep/sim/convex_distance.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace sidestep {
+namespace sidestep::sim {
 namespace {
 
 using Eigen::Vector3d;
@@ -116,4 +116,4 @@ double ConvexDistance(const ConvexSolid& a, const ConvexSolid& b, const Eigen::I
   return std::max(0.0, v.norm() - a.radius_m - b.radius_m);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-namespace sidestep {
+namespace sidestep::sim {
 
 /// A bounded convex solid: everything within `radius_m` of a core. Lengths in metres.
 struct ConvexSolid {
@@ -27,4 +27,4 @@ struct ConvexSolid {
 /// @param X_AB where solid b is, in the frame of solid a.
 double ConvexDistance(const ConvexSolid& a, const ConvexSolid& b, const Eigen::Isometry3d& X_AB);
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

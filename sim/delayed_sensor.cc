@@ -1,12 +1,13 @@
-#include "sim/delayed_sensor.h"
+#include "sidestep/sim/delayed_sensor.h"
 
 #include <algorithm>
 #include <utility>
 
-namespace sidestep {
+namespace sidestep::sim {
 
-DelayedSensor::DelayedSensor(std::unique_ptr<Sensor> sensor, const SensorSettings& settings,
-                             const World& world, std::uint64_t seed)
+DelayedSensor::DelayedSensor(std::unique_ptr<robot::Sensor> sensor,
+                             const scenarios::SensorSettings& settings, const World& world,
+                             std::uint64_t seed)
     : sensor_(std::move(sensor)),
       latency_s_(settings.latency_s),
       jitter_s_(settings.jitter_s),
@@ -42,4 +43,4 @@ std::optional<Scan> DelayedSensor::Read() {
   return std::nullopt;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -4,22 +4,22 @@
 #include <optional>
 #include <vector>
 
-#include "core/random.h"
-#include "robot/sensor.h"
-#include "scenarios/sensor_settings.h"
-#include "sim/world.h"
+#include "sidestep/core/random.h"
+#include "sidestep/robot/sensor.h"
+#include "sidestep/scenarios/sensor_settings.h"
+#include "sidestep/sim/world.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 
 /// Any sensor, whose scans arrive late or never: each is lost with the probability `dropout`; the
 /// others arrive latency_s plus a uniform part of jitter_s after their capture, rounded up to a
 /// tick of the world. A scan that a newer one has overtaken is thrown away, as a driver would do,
 /// so scans still come in the order of capture.
-class DelayedSensor final : public Sensor {
+class DelayedSensor final : public robot::Sensor {
  public:
   /// @param world must outlive this; its clock says what has arrived.
-  DelayedSensor(std::unique_ptr<Sensor> sensor, const SensorSettings& settings, const World& world,
-                std::uint64_t seed);
+  DelayedSensor(std::unique_ptr<robot::Sensor> sensor, const scenarios::SensorSettings& settings,
+                const World& world, std::uint64_t seed);
 
   EpisodeTime NextDue() const override;
   std::optional<Scan> Read() override;
@@ -30,7 +30,7 @@ class DelayedSensor final : public Sensor {
     Scan scan;
   };
 
-  std::unique_ptr<Sensor> sensor_;
+  std::unique_ptr<robot::Sensor> sensor_;
   double latency_s_, jitter_s_, dropout_;
   const World& world_;
   RandomStream jitter_random_, dropout_random_;
@@ -38,4 +38,4 @@ class DelayedSensor final : public Sensor {
   std::optional<EpisodeTime> newest_;   // capture of the newest scan that was delivered
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -1,8 +1,8 @@
-#include "sim/depth_camera.h"
+#include "sidestep/sim/depth_camera.h"
 
 #include <cmath>
 
-namespace sidestep {
+namespace sidestep::sim {
 namespace {
 
 // The pose of an upright camera that looks from one point to another.
@@ -26,8 +26,8 @@ Eigen::Matrix3Xd Columns(const std::vector<Eigen::Vector3d>& points) {
 
 }  // namespace
 
-DepthCamera::DepthCamera(const World& world, const CameraSettings& settings, double rate_hz,
-                         std::uint64_t seed)
+DepthCamera::DepthCamera(const World& world, const scenarios::CameraSettings& settings,
+                         double rate_hz, std::uint64_t seed)
     : world_(world),
       settings_(settings),
       clock_(rate_hz),
@@ -71,9 +71,10 @@ std::optional<Scan> DepthCamera::Read() {
   return scan;
 }
 
-std::unique_ptr<Sensor> MakeDepthCamera(const Scenario& scenario, const World& world) {
+std::unique_ptr<robot::Sensor> MakeDepthCamera(const scenarios::Scenario& scenario,
+                                               const World& world) {
   return std::make_unique<DepthCamera>(world, scenario.sensor.camera.value(),
                                        scenario.sensor.rate_hz, scenario.seed);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

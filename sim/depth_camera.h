@@ -3,14 +3,14 @@
 #include <memory>
 #include <vector>
 
-#include "core/random.h"
-#include "robot/sensor.h"
-#include "scenarios/scenario.h"
-#include "sim/capture_clock.h"
-#include "sim/ray_caster.h"
-#include "sim/world.h"
+#include "sidestep/core/random.h"
+#include "sidestep/robot/sensor.h"
+#include "sidestep/scenarios/scenario.h"
+#include "sidestep/sim/capture_clock.h"
+#include "sidestep/sim/ray_caster.h"
+#include "sidestep/sim/world.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 
 /// A depth camera that stands still in the world: one ray through the middle of each pixel, met by
 /// the true solids. Its frame C is that of computer vision: x to the right of the image, y down,
@@ -21,10 +21,10 @@ namespace sidestep {
 /// ray. Pixels that see the floor, the robot, or nothing within range_m of depth say that their ray
 /// is free so far, as after a filter that knows where the robot is. Pixels that drop out say
 /// nothing.
-class DepthCamera final : public Sensor {
+class DepthCamera final : public robot::Sensor {
  public:
   /// @param world must outlive this.
-  DepthCamera(const World& world, const CameraSettings& settings, double rate_hz,
+  DepthCamera(const World& world, const scenarios::CameraSettings& settings, double rate_hz,
               std::uint64_t seed);
 
   EpisodeTime NextDue() const override { return clock_.Next(); }
@@ -32,7 +32,7 @@ class DepthCamera final : public Sensor {
 
  private:
   const World& world_;
-  CameraSettings settings_;
+  scenarios::CameraSettings settings_;
   CaptureClock clock_;
   RayCaster caster_;
   Pose X_WC_;
@@ -41,6 +41,7 @@ class DepthCamera final : public Sensor {
 };
 
 /// As a scenario describes it, which must have settings of a camera.
-std::unique_ptr<Sensor> MakeDepthCamera(const Scenario& scenario, const World& world);
+std::unique_ptr<robot::Sensor> MakeDepthCamera(const scenarios::Scenario& scenario,
+                                               const World& world);
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -1,4 +1,4 @@
-#include "sim/geom_distance.h"
+#include "sidestep/sim/geom_distance.h"
 
 #include <algorithm>
 #include <array>
@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "sim/convex_distance.h"
-#include "sim/geom_solids.h"
-#include "sim/mujoco_pose.h"
+#include "sidestep/sim/convex_distance.h"
+#include "sidestep/sim/geom_solids.h"
+#include "sidestep/sim/mujoco_pose.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 namespace {
 
 ConvexSolid FromHull(const ConvexHull& hull) {
@@ -157,4 +157,4 @@ double GeomDistance::Distance(const mjData& data, int geom1, int geom2) const {
   return least;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

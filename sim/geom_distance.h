@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "sim/convex_distance.h"
+#include "sidestep/sim/convex_distance.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 
 /// Where two solids touch.
 struct Touch {
@@ -50,4 +50,4 @@ class GeomDistance {
   std::vector<std::vector<Prism>> prisms_;          ///< one list a geom, filled for height fields
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

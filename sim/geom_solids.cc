@@ -1,10 +1,10 @@
-#include "sim/geom_solids.h"
+#include "sidestep/sim/geom_solids.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <stdexcept>
 
-namespace sidestep {
+namespace sidestep::sim {
 namespace {
 
 // Turns each triangle so that its normal looks away from the centre.
@@ -112,4 +112,4 @@ std::vector<ConvexHull> HeightField::Prisms() const {
   return prisms;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-namespace sidestep {
+namespace sidestep::sim {
 
 /// A convex polyhedron in its geom's frame [m]. Faces are triangles of vertices, counter-clockwise
 /// seen from outside; coplanar neighbours may make up one flat face.
@@ -43,4 +43,4 @@ class HeightField {
   double base_m_ = 0, top_m_ = 0;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

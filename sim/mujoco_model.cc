@@ -1,12 +1,12 @@
-#include "sim/mujoco_model.h"
+#include "sidestep/sim/mujoco_model.h"
 
 #include <algorithm>
 #include <array>
 #include <cstring>
 
-#include "core/input_error.h"
+#include "sidestep/core/input_error.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 namespace {
 
 // MuJoCo is C and ends the process when its error handler returns. It is built with unwind tables
@@ -58,4 +58,4 @@ std::optional<std::string> MujocoWarning(const mjData& data) {
 
 std::string MujocoVersion() { return mj_versionString(); }
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

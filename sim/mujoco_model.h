@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace sidestep {
+namespace sidestep::sim {
 
 /// The physics failed: a diverged state, too many contacts for MuJoCo's buffers, an engine error.
 /// The episode cannot be completed.
@@ -43,4 +43,4 @@ MujocoDataPtr MakeMujocoData(const mjModel& model);
 /// that has diverged and goes on; what follows looks like a simulation and is none.
 std::optional<std::string> MujocoWarning(const mjData& data);
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -2,9 +2,9 @@
 
 #include <mujoco/mujoco.h>
 
-#include "core/pose.h"
+#include "sidestep/core/pose.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 
 /// R_WG of a geom, as MuJoCo last computed it.
 inline Eigen::Matrix3d GeomRotation(const mjData& data, int geom) {
@@ -20,4 +20,4 @@ inline Pose GeomPose(const mjData& data, int geom) {
   return Pose(Eigen::Quaterniond(GeomRotation(data, geom)), GeomPosition(data, geom));
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

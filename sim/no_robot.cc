@@ -1,8 +1,8 @@
-#include "sim/no_robot.h"
+#include "sidestep/sim/no_robot.h"
 
 #include <stdexcept>
 
-namespace sidestep {
+namespace sidestep::sim {
 
 void NoRobot::Submit(const Trajectory&, EpisodeTime) {
   throw std::invalid_argument("NoRobot: there is none to follow a trajectory");
@@ -13,4 +13,4 @@ void NoRobot::AdvanceTo(EpisodeTime t) {
   while (world_.ticks() < last) world_.Step(Eigen::VectorXd());
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

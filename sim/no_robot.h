@@ -2,13 +2,13 @@
 
 #include <vector>
 
-#include "robot/robot_interface.h"
-#include "sim/world.h"
+#include "sidestep/robot/robot_interface.h"
+#include "sidestep/sim/world.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 
 /// Stands for the robot of a world that has none: it has no joints, and lets time pass.
-class NoRobot final : public RobotInterface {
+class NoRobot final : public robot::RobotInterface {
  public:
   /// @param world is stepped by this; must outlive it.
   explicit NoRobot(World* world) : world_(*world) {}
@@ -24,4 +24,4 @@ class NoRobot final : public RobotInterface {
   World& world_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -1,10 +1,10 @@
-#include "sim/noisy_occupancy.h"
+#include "sidestep/sim/noisy_occupancy.h"
 
 #include <cmath>
 #include <utility>
 #include <vector>
 
-namespace sidestep {
+namespace sidestep::sim {
 namespace {
 
 // How many trials fail before the next success, if each succeeds with probability p > 0; so most
@@ -17,8 +17,8 @@ std::size_t Failures(double p, std::size_t most, RandomStream& random) {
 
 }  // namespace
 
-NoisyOccupancy::NoisyOccupancy(std::unique_ptr<Sensor> sensor, const GridSpec& grid,
-                               const OccupancyNoise& noise, std::uint64_t seed)
+NoisyOccupancy::NoisyOccupancy(std::unique_ptr<robot::Sensor> sensor, const GridSpec& grid,
+                               const scenarios::OccupancyNoise& noise, std::uint64_t seed)
     : sensor_(std::move(sensor)),
       grid_(grid),
       noise_(noise),
@@ -57,4 +57,4 @@ std::optional<Scan> NoisyOccupancy::Read() {
   return scan;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

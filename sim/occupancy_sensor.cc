@@ -1,10 +1,10 @@
-#include "sim/occupancy_sensor.h"
+#include "sidestep/sim/occupancy_sensor.h"
 
 #include <utility>
 
-#include "sim/noisy_occupancy.h"
+#include "sidestep/sim/noisy_occupancy.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 namespace {
 
 OccupancyGrid CheckedGrid(const GridSpec& spec) {
@@ -52,13 +52,14 @@ std::optional<Scan> OccupancySensor::Read() {
   return scan;
 }
 
-std::unique_ptr<Sensor> MakeOccupancySensor(const Scenario& scenario, const World& world) {
-  const SensorSettings& settings = scenario.sensor;
-  std::unique_ptr<Sensor> sensor =
+std::unique_ptr<robot::Sensor> MakeOccupancySensor(const scenarios::Scenario& scenario,
+                                                   const World& world) {
+  const scenarios::SensorSettings& settings = scenario.sensor;
+  std::unique_ptr<robot::Sensor> sensor =
       std::make_unique<OccupancySensor>(world, scenario.grid, settings.rate_hz);
   if (!settings.noise) return sensor;
   return std::make_unique<NoisyOccupancy>(std::move(sensor), scenario.grid, *settings.noise,
                                           scenario.seed);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -5,21 +5,21 @@
 #include <memory>
 #include <vector>
 
-#include "core/grid.h"
-#include "robot/sensor.h"
-#include "scenarios/scenario.h"
-#include "sim/capture_clock.h"
-#include "sim/rasteriser.h"
-#include "sim/world.h"
-#include "sim/world_geoms.h"
+#include "sidestep/core/grid.h"
+#include "sidestep/robot/sensor.h"
+#include "sidestep/scenarios/scenario.h"
+#include "sidestep/sim/capture_clock.h"
+#include "sidestep/sim/rasteriser.h"
+#include "sidestep/sim/world.h"
+#include "sidestep/sim/world_geoms.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 
 /// Sees the world as a perfect occupancy grid: a scan holds the centres of the filled cells (see
 /// RasteriseWorld), in the world frame.
 ///
 /// A scan shows the world at the moment of Read.
-class OccupancySensor final : public Sensor {
+class OccupancySensor final : public robot::Sensor {
  public:
   /// @param world must outlive this.
   /// @throws std::invalid_argument for a rate <= 0 or a bad grid.
@@ -38,6 +38,7 @@ class OccupancySensor final : public Sensor {
 };
 
 /// As a scenario describes it, noise and all.
-std::unique_ptr<Sensor> MakeOccupancySensor(const Scenario& scenario, const World& world);
+std::unique_ptr<robot::Sensor> MakeOccupancySensor(const scenarios::Scenario& scenario,
+                                                   const World& world);
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -1,10 +1,10 @@
-#include "sim/picture.h"
+#include "sidestep/sim/picture.h"
 
-#include "core/input_error.h"
-#include "sim/mujoco_model.h"
-#include "sim/mujoco_pose.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/sim/mujoco_model.h"
+#include "sidestep/sim/mujoco_pose.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 namespace {
 
 std::string TypeName(int type, const std::string& name) {
@@ -43,4 +43,4 @@ std::vector<PictureGeom> PictureOf(const std::string& xml, const std::string& na
   return picture;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

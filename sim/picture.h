@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "core/pose.h"
+#include "sidestep/core/pose.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 
 /// One primitive of a picture: something to look at, of no other effect.
 struct PictureGeom {
@@ -22,4 +22,4 @@ struct PictureGeom {
 /// @throws InputError if it is not a model, or draws a mesh or a height field.
 std::vector<PictureGeom> PictureOf(const std::string& xml, const std::string& name);
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -1,4 +1,4 @@
-#include "sim/rasteriser.h"
+#include "sidestep/sim/rasteriser.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/mujoco_pose.h"
-#include "sim/world_geoms.h"
+#include "sidestep/sim/mujoco_pose.h"
+#include "sidestep/sim/world_geoms.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 namespace {
 
 constexpr double kOn = Rasteriser::kOnSurface_m;
@@ -207,4 +207,4 @@ OccupancyGrid RasteriseWorld(const mjModel& model, const mjData& data, const Gri
   return grid;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "core/grid.h"
-#include "sim/geom_solids.h"
+#include "sidestep/core/grid.h"
+#include "sidestep/sim/geom_solids.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 
 /// Ground-truth occupancy: a cell is filled iff its centre is inside a solid.
 ///
@@ -59,4 +59,4 @@ class Rasteriser {
 /// robot's foot would always be "in collision" with it.
 OccupancyGrid RasteriseWorld(const mjModel& model, const mjData& data, const GridSpec& spec);
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

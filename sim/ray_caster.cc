@@ -1,11 +1,11 @@
-#include "sim/ray_caster.h"
+#include "sidestep/sim/ray_caster.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "sim/mujoco_pose.h"
+#include "sidestep/sim/mujoco_pose.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 namespace {
 
 bool Holds(const std::vector<int>& sorted, int geom) {
@@ -55,4 +55,4 @@ std::optional<RayHit> RayCaster::Cast(const mjData& data, const Eigen::Vector3d&
   return nearest;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "sim/world_geoms.h"
+#include "sidestep/sim/world_geoms.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 
 /// What a ray meets first.
 struct RayHit {
@@ -37,4 +37,4 @@ class RayCaster {
   std::vector<int> solids_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

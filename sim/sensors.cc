@@ -1,16 +1,16 @@
-#include "sim/sensors.h"
+#include "sidestep/sim/sensors.h"
 
 #include <algorithm>
 #include <string_view>
 
-#include "core/input_error.h"
-#include "sim/delayed_sensor.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/sim/delayed_sensor.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 
 #define SIDESTEP_SENSOR(name, settings, make, file) \
-  std::unique_ptr<Sensor> make(const Scenario&, const World&);
-#include "sim/sensors.def"
+  std::unique_ptr<robot::Sensor> make(const scenarios::Scenario&, const World&);
+#include "sidestep/sim/sensors.def"
 #undef SIDESTEP_SENSOR
 
 namespace {
@@ -18,21 +18,22 @@ namespace {
 struct Entry {
   std::string_view name;
   std::string_view settings;  // as sensors.def says
-  std::unique_ptr<Sensor> (*make)(const Scenario&, const World&);
+  std::unique_ptr<robot::Sensor> (*make)(const scenarios::Scenario&, const World&);
 };
 constexpr Entry kSensors[] = {
 #define SIDESTEP_SENSOR(name, settings, make, file) {name, settings, &(make)},
-#include "sim/sensors.def"
+#include "sidestep/sim/sensors.def"
 #undef SIDESTEP_SENSOR
 };
 
-[[noreturn]] void Fail(const Scenario& scenario, const std::string& key, const std::string& why) {
+[[noreturn]] void Fail(const scenarios::Scenario& scenario, const std::string& key,
+                       const std::string& why) {
   throw InputError(scenario.file, scenario.sensor.line, "sensor." + key, why);
 }
 
 // The scenario must hold the settings that the sensor needs, and none of another's.
-void CheckSettings(const Scenario& scenario, const Entry& entry) {
-  const SensorSettings& sensor = scenario.sensor;
+void CheckSettings(const scenarios::Scenario& scenario, const Entry& entry) {
+  const scenarios::SensorSettings& sensor = scenario.sensor;
   const std::string of = "the sensor '" + sensor.name + "'";
   const struct {
     std::string key;
@@ -57,12 +58,12 @@ std::vector<std::string> SensorNames() {
   return names;
 }
 
-std::unique_ptr<Sensor> MakeSensor(const Scenario& scenario, const World& world) {
-  const SensorSettings& settings = scenario.sensor;
+std::unique_ptr<robot::Sensor> MakeSensor(const scenarios::Scenario& scenario, const World& world) {
+  const scenarios::SensorSettings& settings = scenario.sensor;
   for (const Entry& entry : kSensors) {
     if (settings.name != entry.name) continue;
     CheckSettings(scenario, entry);
-    std::unique_ptr<Sensor> sensor = entry.make(scenario, world);
+    std::unique_ptr<robot::Sensor> sensor = entry.make(scenario, world);
     const bool is_prompt =
         settings.latency_s == 0 && settings.jitter_s == 0 && settings.dropout == 0;
     if (is_prompt) return sensor;
@@ -73,4 +74,4 @@ std::unique_ptr<Sensor> MakeSensor(const Scenario& scenario, const World& world)
   Fail(scenario, "name", "is not a known sensor (known: " + known + "): '" + settings.name + "'");
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -4,17 +4,17 @@
 #include <string>
 #include <vector>
 
-#include "robot/sensor.h"
-#include "scenarios/scenario.h"
-#include "sim/world.h"
+#include "sidestep/robot/sensor.h"
+#include "sidestep/scenarios/scenario.h"
+#include "sidestep/sim/world.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 
 /// The simulated sensors there are, sorted.
 std::vector<std::string> SensorNames();
 
 /// Makes the scenario's sensor. @param world must outlive it.
 /// @throws InputError for a name that is not known.
-std::unique_ptr<Sensor> MakeSensor(const Scenario& scenario, const World& world);
+std::unique_ptr<robot::Sensor> MakeSensor(const scenarios::Scenario& scenario, const World& world);
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -1,13 +1,13 @@
-#include "sim/simulated_robot.h"
+#include "sidestep/sim/simulated_robot.h"
 
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
 
-namespace sidestep {
+namespace sidestep::sim {
 namespace {
 
-Eigen::VectorXd TorqueLimits(const RobotModel& robot) {
+Eigen::VectorXd TorqueLimits(const robot::RobotModel& robot) {
   Eigen::VectorXd limits(robot.num_joints());
   for (int i = 0; i < robot.num_joints(); ++i) {
     limits(i) = robot.limits()[static_cast<std::size_t>(i)].torque_max;
@@ -17,14 +17,14 @@ Eigen::VectorXd TorqueLimits(const RobotModel& robot) {
 
 }  // namespace
 
-SimulatedRobot::SimulatedRobot(const RobotModel& robot, World* world,
+SimulatedRobot::SimulatedRobot(const robot::RobotModel& robot, World* world,
                                std::function<void()> after_tick, double v_scale)
     : world_(*world),
       after_tick_(std::move(after_tick)),
       stiffness_(robot.stiffness()),
       damping_(robot.damping()),
       torque_max_(TorqueLimits(robot)),
-      tracker_(TrackerLimits::Of(robot, v_scale), 1.0 / World::kTicksPerSecond) {
+      tracker_(control::TrackerLimits::Of(robot, v_scale), 1.0 / World::kTicksPerSecond) {
   const Eigen::VectorXd q = world_.q();
   if (q.size() != robot.num_joints()) {
     throw std::invalid_argument("SimulatedRobot: the world's arm has another number of joints");
@@ -53,7 +53,7 @@ void SimulatedRobot::AdvanceTo(EpisodeTime t) {
   while (world_.ticks() < last) Tick();
 }
 
-TrackerCommand SimulatedRobot::NextCommand() {
+control::TrackerCommand SimulatedRobot::NextCommand() {
   const std::int64_t now = world_.ticks();
   while (!queue_.empty() && World::TickNotBefore(queue_.front().start) <= now) {
     motion_ = std::move(queue_.front());
@@ -70,7 +70,7 @@ void SimulatedRobot::Tick() {
   sample.t = world_.time();
   sample.q = world_.q();
   sample.v = world_.v();
-  const TrackerCommand command = NextCommand();
+  const control::TrackerCommand command = NextCommand();
   const Eigen::VectorXd torque = stiffness_.cwiseProduct(command.q - sample.q) +
                                  damping_.cwiseProduct(command.v - sample.v) + world_.bias_torque();
   world_.Step(torque.cwiseMax(-torque_max_).cwiseMin(torque_max_));
@@ -84,4 +84,4 @@ void SimulatedRobot::Tick() {
 
 std::vector<ControlSample> SimulatedRobot::TakeControlLog() { return std::exchange(log_, {}); }
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -6,19 +6,19 @@
 #include <optional>
 #include <vector>
 
-#include "control/tracker.h"
-#include "robot/robot_interface.h"
-#include "robot/robot_model.h"
-#include "sim/world.h"
+#include "sidestep/control/tracker.h"
+#include "sidestep/robot/robot_interface.h"
+#include "sidestep/robot/robot_model.h"
+#include "sidestep/sim/world.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 
 /// The simulated arm, and with AdvanceTo the clock of its world. In each tick of 1 ms:
 ///   command = tracker(trajectory), within the robot's limits (control/tracker.h);
 ///   torque  = K (q_command - q) + D (v_command - v) + bias, within the motors' limits,
 /// with the stiffness K and damping D of robot.yaml, and gravity and Coriolis forces as the bias.
 /// The robot's inertia and friction are not compensated, so the arm lags as a real one does.
-class SimulatedRobot final : public RobotInterface {
+class SimulatedRobot final : public robot::RobotInterface {
  public:
   /// Holds where the world's arm is now.
   /// @param world is stepped by this; must outlive it.
@@ -26,7 +26,7 @@ class SimulatedRobot final : public RobotInterface {
   /// @param v_scale of the robot's velocity limits, for the command: above 1 a motion may exceed
   /// them, and the record shows by how much.
   /// @throws std::invalid_argument if the robot has not as many joints as the world's arm.
-  SimulatedRobot(const RobotModel& robot, World* world, std::function<void()> after_tick,
+  SimulatedRobot(const robot::RobotModel& robot, World* world, std::function<void()> after_tick,
                  double v_scale = 1);
 
   JointState Read() const override;
@@ -45,15 +45,15 @@ class SimulatedRobot final : public RobotInterface {
   };
 
   void Tick();
-  TrackerCommand NextCommand();
+  control::TrackerCommand NextCommand();
 
   World& world_;
   std::function<void()> after_tick_;
   Eigen::VectorXd stiffness_, damping_, torque_max_;
-  JerkLimitedTracker tracker_;
+  control::JerkLimitedTracker tracker_;
   std::optional<Motion> motion_;  ///< followed now; none: brakes, then rests
   std::deque<Motion> queue_;      ///< to be followed later, by start
   std::vector<ControlSample> log_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

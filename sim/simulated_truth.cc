@@ -1,10 +1,10 @@
-#include "sim/simulated_truth.h"
+#include "sidestep/sim/simulated_truth.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace sidestep {
+namespace sidestep::sim {
 
 SimulatedTruth::SimulatedTruth(const World& world) : world_(world), distance_(world.model()) {
   const mjModel& model = world.model();
@@ -46,7 +46,7 @@ void SimulatedTruth::Observe() {
   if (world_.ticks() % (World::kTicksPerSecond / kSamplesPerSecond) == 0) {
     MeasureClearance(deepest_pair, deepest.depth_m);
     pending_.t = world_.time();
-    for (const MovingObstacle& obstacle : world_.obstacles()) {
+    for (const scenarios::MovingObstacle& obstacle : world_.obstacles()) {
       pending_.X_WO.push_back(PoseAt(obstacle, world_.time()));
     }
     samples_.push_back(pending_);
@@ -102,7 +102,7 @@ void SimulatedTruth::MeasureClearance(const Pair* deepest_pair, double deepest_m
 
 std::vector<ObjectObservation> SimulatedTruth::ObstaclesAt(EpisodeTime t) const {
   std::vector<ObjectObservation> obstacles;
-  for (const MovingObstacle& obstacle : world_.obstacles()) {
+  for (const scenarios::MovingObstacle& obstacle : world_.obstacles()) {
     ObjectObservation observation;
     observation.id = obstacle.name;
     observation.t = t;
@@ -115,4 +115,4 @@ std::vector<ObjectObservation> SimulatedTruth::ObstaclesAt(EpisodeTime t) const 
 
 std::vector<TruthSample> SimulatedTruth::TakeSamples() { return std::exchange(samples_, {}); }
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

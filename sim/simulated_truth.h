@@ -4,12 +4,12 @@
 #include <utility>
 #include <vector>
 
-#include "robot/world_truth.h"
-#include "sim/geom_distance.h"
-#include "sim/world.h"
-#include "sim/world_geoms.h"
+#include "sidestep/robot/world_truth.h"
+#include "sidestep/sim/geom_distance.h"
+#include "sidestep/sim/world.h"
+#include "sidestep/sim/world_geoms.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 
 /// The verdict, by geometry: contact at every tick, clearance at 100 Hz (first at time 0).
 ///
@@ -20,7 +20,7 @@ namespace sidestep {
 ///
 /// A contact of the robot with itself counts as contact, with the object "self", where its model
 /// lets its links touch. It has no part in the clearance, which is to other things.
-class SimulatedTruth final : public WorldTruth {
+class SimulatedTruth final : public robot::WorldTruth {
  public:
   static constexpr int kSamplesPerSecond = 100;
   static constexpr const char* kSelf = "self";
@@ -53,4 +53,4 @@ class SimulatedTruth final : public WorldTruth {
   std::vector<TruthSample> samples_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

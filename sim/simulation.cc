@@ -1,34 +1,34 @@
-#include "sim/simulation.h"
+#include "sidestep/sim/simulation.h"
 
-#include "core/input_error.h"
-#include "sim/no_robot.h"
-#include "sim/sensors.h"
-#include "sim/simulated_robot.h"
-#include "sim/world_xml.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/sim/no_robot.h"
+#include "sidestep/sim/sensors.h"
+#include "sidestep/sim/simulated_robot.h"
+#include "sidestep/sim/world_xml.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 namespace {
 
 // Times a robot's velocity limits: what a tracker that needs a limit takes for none.
 constexpr double kUnlimited = 10;
 
-Eigen::VectorXd StartOf(const Scenario& scenario, const RobotModel& robot) {
+Eigen::VectorXd StartOf(const scenarios::Scenario& scenario, const robot::RobotModel& robot) {
   if (scenario.q_start.size() > 0) return scenario.q_start;
   const auto found = robot.configurations().find(scenario.start_name);
   if (found != robot.configurations().end()) return found->second;
-  throw WrongValue(scenario, "task.start",
-                   robot.name() + " has no configuration '" + scenario.start_name + "'");
+  throw scenarios::WrongValue(scenario, "task.start",
+                              robot.name() + " has no configuration '" + scenario.start_name + "'");
 }
 
-std::vector<std::string> NamesOf(const std::vector<MovingObstacle>& obstacles) {
+std::vector<std::string> NamesOf(const std::vector<scenarios::MovingObstacle>& obstacles) {
   std::vector<std::string> names;
-  for (const MovingObstacle& obstacle : obstacles) names.push_back(obstacle.name);
+  for (const scenarios::MovingObstacle& obstacle : obstacles) names.push_back(obstacle.name);
   return names;
 }
 
 }  // namespace
 
-Simulation::Simulation(const Scenario& scenario, const RobotModel& robot,
+Simulation::Simulation(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
                        const std::string& models_dir)
     : model_xml_(BuildWorldXml(scenario, robot.mount_links(), models_dir)),
       joints_(robot.joint_names()),
@@ -39,7 +39,7 @@ Simulation::Simulation(const Scenario& scenario, const RobotModel& robot,
           robot, &world_, [this] { truth_.Observe(); }, scenario.velocity_limits ? 1 : kUnlimited)),
       sensor_(MakeSensor(scenario, world_)) {}
 
-Simulation::Simulation(const Scenario& scenario, const std::string& models_dir)
+Simulation::Simulation(const scenarios::Scenario& scenario, const std::string& models_dir)
     : model_xml_(BuildWorldXml(scenario, {}, models_dir)),
       obstacles_(NamesOf(scenario.moving_obstacles)),
       world_(scenario, model_xml_, {}, Eigen::VectorXd()),
@@ -47,4 +47,4 @@ Simulation::Simulation(const Scenario& scenario, const std::string& models_dir)
       robot_(std::make_unique<NoRobot>(&world_)),
       sensor_(MakeSensor(scenario, world_)) {}
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -4,15 +4,15 @@
 #include <string>
 #include <vector>
 
-#include "robot/robot_interface.h"
-#include "robot/robot_model.h"
-#include "robot/sensor.h"
-#include "robot/world_truth.h"
-#include "scenarios/scenario.h"
-#include "sim/simulated_truth.h"
-#include "sim/world.h"
+#include "sidestep/robot/robot_interface.h"
+#include "sidestep/robot/robot_model.h"
+#include "sidestep/robot/sensor.h"
+#include "sidestep/robot/world_truth.h"
+#include "sidestep/scenarios/scenario.h"
+#include "sidestep/sim/simulated_truth.h"
+#include "sidestep/sim/world.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 
 /// Everything simulated of one episode: the world, the robot that moves in it, the sensor that sees
 /// it, and the truth about it, at time 0. One thread at a time; any number of simulations in one
@@ -22,15 +22,16 @@ class Simulation {
   /// @param robot the scenario's, with its base at scenario.X_WB.
   /// @throws InputError for model files that do not fit, a start that the robot does not have, or
   ///   an unknown sensor.
-  Simulation(const Scenario& scenario, const RobotModel& robot, const std::string& models_dir);
+  Simulation(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
+             const std::string& models_dir);
   /// The world of a scenario without a robot; robot() is then only its clock (sim/no_robot.h).
-  Simulation(const Scenario& scenario, const std::string& models_dir);
+  Simulation(const scenarios::Scenario& scenario, const std::string& models_dir);
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  RobotInterface& robot() { return *robot_; }
-  Sensor& sensor() { return *sensor_; }
-  WorldTruth& truth() { return truth_; }
+  robot::RobotInterface& robot() { return *robot_; }
+  robot::Sensor& sensor() { return *sensor_; }
+  robot::WorldTruth& truth() { return truth_; }
   const World& world() const { return world_; }
 
   const std::string& model_xml() const { return model_xml_; }         ///< MJCF of the whole world
@@ -42,8 +43,8 @@ class Simulation {
   std::vector<std::string> joints_, obstacles_;
   World world_;
   SimulatedTruth truth_;
-  std::unique_ptr<RobotInterface> robot_;
-  std::unique_ptr<Sensor> sensor_;
+  std::unique_ptr<robot::RobotInterface> robot_;
+  std::unique_ptr<robot::Sensor> sensor_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -1,10 +1,10 @@
-#include "sim/tag_camera.h"
+#include "sidestep/sim/tag_camera.h"
 
 #include <Eigen/Geometry>
 
-#include "sim/rasteriser.h"
+#include "sidestep/sim/rasteriser.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 namespace {
 
 Eigen::Matrix3Xd StaticCells(const World& world, const GridSpec& grid) {
@@ -23,7 +23,8 @@ Eigen::Matrix3Xd StaticCells(const World& world, const GridSpec& grid) {
 }
 
 // Standard deviations along three axes as a covariance in W: across the line of sight, and along.
-Eigen::Matrix3d SightCovariance(const Eigen::Vector3d& sight_W, const TagSettings& settings) {
+Eigen::Matrix3d SightCovariance(const Eigen::Vector3d& sight_W,
+                                const scenarios::TagSettings& settings) {
   const double d = sight_W.norm();
   const Eigen::Vector3d u = sight_W / d;
   const double across = settings.across_noise * d, along = settings.along_noise_per_m * d * d;
@@ -38,8 +39,8 @@ Eigen::Vector3d Normal3(RandomStream& random) {
 
 }  // namespace
 
-TagCamera::TagCamera(const World& world, const GridSpec& grid, const TagSettings& settings,
-                     double rate_hz, std::uint64_t seed)
+TagCamera::TagCamera(const World& world, const GridSpec& grid,
+                     const scenarios::TagSettings& settings, double rate_hz, std::uint64_t seed)
     : world_(world),
       settings_(settings),
       clock_(rate_hz),
@@ -47,7 +48,7 @@ TagCamera::TagCamera(const World& world, const GridSpec& grid, const TagSettings
       p_WStatic_(StaticCells(world, grid)),
       random_(seed, "tags") {}
 
-bool TagCamera::Sees(const MovingObstacle& obstacle, const Pose& X_WO) const {
+bool TagCamera::Sees(const scenarios::MovingObstacle& obstacle, const Pose& X_WO) const {
   const Eigen::Vector3d sight_W = X_WO.translation() - settings_.position_m;
   const double d = sight_W.norm();
   if (!(d > 0) || d > settings_.range_m) return false;
@@ -55,7 +56,7 @@ bool TagCamera::Sees(const MovingObstacle& obstacle, const Pose& X_WO) const {
   return !hit || hit->distance_m >= d || GeomOwner(world_.model(), hit->geom) == obstacle.name;
 }
 
-ObjectObservation TagCamera::Measure(const MovingObstacle& obstacle, const Pose& X_WO) {
+ObjectObservation TagCamera::Measure(const scenarios::MovingObstacle& obstacle, const Pose& X_WO) {
   const Eigen::Vector3d sight_W = X_WO.translation() - settings_.position_m;
   const double d = sight_W.norm();
   const Eigen::Vector3d u = sight_W / d;
@@ -83,16 +84,17 @@ std::optional<Scan> TagCamera::Read() {
   Scan scan;
   scan.t = world_.time();
   scan.p_CP = p_WStatic_;
-  for (const MovingObstacle& obstacle : world_.obstacles()) {
+  for (const scenarios::MovingObstacle& obstacle : world_.obstacles()) {
     const Pose X_WO = PoseAt(obstacle, scan.t);
     if (Sees(obstacle, X_WO)) scan.objects.push_back(Measure(obstacle, X_WO));
   }
   return scan;
 }
 
-std::unique_ptr<Sensor> MakeTagCamera(const Scenario& scenario, const World& world) {
+std::unique_ptr<robot::Sensor> MakeTagCamera(const scenarios::Scenario& scenario,
+                                             const World& world) {
   return std::make_unique<TagCamera>(world, scenario.grid, scenario.sensor.tags.value(),
                                      scenario.sensor.rate_hz, scenario.seed);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

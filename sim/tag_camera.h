@@ -2,15 +2,15 @@
 
 #include <memory>
 
-#include "core/grid.h"
-#include "core/random.h"
-#include "robot/sensor.h"
-#include "scenarios/scenario.h"
-#include "sim/capture_clock.h"
-#include "sim/ray_caster.h"
-#include "sim/world.h"
+#include "sidestep/core/grid.h"
+#include "sidestep/core/random.h"
+#include "sidestep/robot/sensor.h"
+#include "sidestep/scenarios/scenario.h"
+#include "sidestep/sim/capture_clock.h"
+#include "sidestep/sim/ray_caster.h"
+#include "sidestep/sim/world.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 
 /// A camera that finds a tag in the middle of each moving obstacle, and so says which obstacle it
 /// is and where, with the covariance of its error; a model of AprilTag detection, without images.
@@ -21,21 +21,21 @@ namespace sidestep {
 /// The errors are normal: at distance d of standard deviation across_noise d across the line of
 /// sight and along_noise_per_m d^2 along it, and rotation_noise_rad about each axis of the tag. The
 /// covariance is that at the measured place, so it is off by as little as the place is.
-class TagCamera final : public Sensor {
+class TagCamera final : public robot::Sensor {
  public:
   /// @param world must outlive this.
-  TagCamera(const World& world, const GridSpec& grid, const TagSettings& settings, double rate_hz,
-            std::uint64_t seed);
+  TagCamera(const World& world, const GridSpec& grid, const scenarios::TagSettings& settings,
+            double rate_hz, std::uint64_t seed);
 
   EpisodeTime NextDue() const override { return clock_.Next(); }
   std::optional<Scan> Read() override;
 
  private:
-  bool Sees(const MovingObstacle& obstacle, const Pose& X_WO) const;
-  ObjectObservation Measure(const MovingObstacle& obstacle, const Pose& X_WO);
+  bool Sees(const scenarios::MovingObstacle& obstacle, const Pose& X_WO) const;
+  ObjectObservation Measure(const scenarios::MovingObstacle& obstacle, const Pose& X_WO);
 
   const World& world_;
-  TagSettings settings_;
+  scenarios::TagSettings settings_;
   CaptureClock clock_;
   RayCaster caster_;
   Eigen::Matrix3Xd p_WStatic_;
@@ -43,6 +43,7 @@ class TagCamera final : public Sensor {
 };
 
 /// As a scenario describes it, which must have settings of tags.
-std::unique_ptr<Sensor> MakeTagCamera(const Scenario& scenario, const World& world);
+std::unique_ptr<robot::Sensor> MakeTagCamera(const scenarios::Scenario& scenario,
+                                             const World& world);
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -1,13 +1,13 @@
-#include "sim/world.h"
+#include "sidestep/sim/world.h"
 
 #include <cmath>
 #include <stdexcept>
 
-#include "core/input_error.h"
+#include "sidestep/core/input_error.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 
-World::World(const Scenario& scenario, const std::string& xml,
+World::World(const scenarios::Scenario& scenario, const std::string& xml,
              const std::vector<std::string>& joints, const Eigen::VectorXd& q_start)
     : model_(LoadMujocoModel(xml, scenario.file)),
       data_(MakeMujocoData(*model_)),
@@ -16,7 +16,7 @@ World::World(const Scenario& scenario, const std::string& xml,
     throw std::invalid_argument("World: q_start must hold one finite number for each joint");
   }
   for (const std::string& name : joints) joints_.push_back(FindJoint(name, scenario.file));
-  for (const MovingObstacle& obstacle : obstacles_) {
+  for (const scenarios::MovingObstacle& obstacle : obstacles_) {
     const int body = mj_name2id(model_.get(), mjOBJ_BODY, obstacle.name.c_str());
     const int mocap = body < 0 ? -1 : model_->body_mocapid[body];
     if (mocap < 0) throw InputError(scenario.file, "no mocap body '" + obstacle.name + "'");
@@ -101,4 +101,4 @@ Eigen::VectorXd World::v() const { return Gather(data_->qvel); }
 Eigen::VectorXd World::bias_torque() const { return Gather(data_->qfrc_bias); }
 Eigen::VectorXd World::motor_torque() const { return Gather(data_->qfrc_actuator); }
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

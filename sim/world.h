@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "core/time.h"
-#include "scenarios/scenario.h"
-#include "sim/mujoco_model.h"
+#include "sidestep/core/time.h"
+#include "sidestep/scenarios/scenario.h"
+#include "sidestep/sim/mujoco_model.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 
 /// The simulated world of one scenario: MuJoCo's model and state, the arm's motors, and obstacles
 /// that follow their prescribed paths. Time moves in ticks of 1 ms. After construction and after
@@ -24,8 +24,8 @@ class World {
   /// @param q_start where they begin, at rest.
   /// @throws InputError if the text is not a model, or has not these joints and motors;
   ///   std::invalid_argument for a q_start of the wrong shape or not finite.
-  World(const Scenario& scenario, const std::string& xml, const std::vector<std::string>& joints,
-        const Eigen::VectorXd& q_start);
+  World(const scenarios::Scenario& scenario, const std::string& xml,
+        const std::vector<std::string>& joints, const Eigen::VectorXd& q_start);
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
@@ -48,7 +48,7 @@ class World {
   /// What the motors really applied in the last Step, within the model's limits. Shape n, N m.
   Eigen::VectorXd motor_torque() const;
 
-  const std::vector<MovingObstacle>& obstacles() const { return obstacles_; }
+  const std::vector<scenarios::MovingObstacle>& obstacles() const { return obstacles_; }
   const mjModel& model() const { return *model_; }
   const mjData& data() const { return *data_; }
 
@@ -64,10 +64,10 @@ class World {
 
   MujocoModelPtr model_;
   MujocoDataPtr data_;
-  std::vector<MovingObstacle> obstacles_;
+  std::vector<scenarios::MovingObstacle> obstacles_;
   std::vector<int> mocap_ids_;  ///< of each obstacle
   std::vector<Joint> joints_;
   std::int64_t ticks_ = 0;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -1,10 +1,10 @@
-#include "sim/world_geoms.h"
+#include "sidestep/sim/world_geoms.h"
 
 #include <algorithm>
 
-#include "sim/world_xml.h"
+#include "sidestep/sim/world_xml.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 
 WorldGeoms FindWorldGeoms(const mjModel& model) {
   const int robot_body = mj_name2id(&model, mjOBJ_BODY, kRobotBody);
@@ -42,4 +42,4 @@ std::string GeomOwner(const mjModel& model, int geom) {
   return name != nullptr ? name : "";
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace sidestep {
+namespace sidestep::sim {
 
 /// The solids of a world by their role, as geom ids, ascending. Pictures (geoms that can touch
 /// nothing: contype and conaffinity both 0) are no solids and in none of the lists.
@@ -27,4 +27,4 @@ bool IsExcluded(const mjModel& model, int body1, int body2);
 /// The name of the body that a geom belongs to; of a geom of the world itself, its own name.
 std::string GeomOwner(const mjModel& model, int geom);
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -1,4 +1,4 @@
-#include "sim/world_xml.h"
+#include "sidestep/sim/world_xml.h"
 
 #include <tinyxml2.h>
 
@@ -9,11 +9,11 @@
 #include <optional>
 #include <set>
 
-#include "core/input_error.h"
-#include "sim/mujoco_model.h"
-#include "sim/picture.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/sim/mujoco_model.h"
+#include "sidestep/sim/picture.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 namespace {
 
 using tinyxml2::XMLDocument;
@@ -108,7 +108,7 @@ bool TakesClass(const std::string& section, const std::string& tag) {
          (section == "contact" && tag == "pair");
 }
 
-void MergeRobot(const Scenario& scenario, const std::string& path, XMLElement* world) {
+void MergeRobot(const scenarios::Scenario& scenario, const std::string& path, XMLElement* world) {
   XMLDocument document;
   const XMLElement& robot = LoadModelFile(path, &document);
   const std::string main_class = scenario.robot + ".xml";
@@ -153,7 +153,7 @@ void MergeRobot(const Scenario& scenario, const std::string& path, XMLElement* w
 
 // The scene ------------------------------------------------------------------------------------
 
-void AddSettings(const Scenario& scenario, XMLElement* world) {
+void AddSettings(const scenarios::Scenario& scenario, XMLElement* world) {
   XMLElement* option = Append(world, "option");
   Set(option, "timestep", "0.001");
   Set(option, "integrator", "Euler");
@@ -218,7 +218,7 @@ void AddAssets(XMLElement* world) {
   AddMaterial(asset, kObstacleMaterial, "0.85 0.42 0.12 1");
 }
 
-void AddFloorAndLights(const Scenario& scenario, XMLElement* worldbody) {
+void AddFloorAndLights(const scenarios::Scenario& scenario, XMLElement* worldbody) {
   XMLElement* floor = Append(worldbody, "geom");
   Set(floor, "name", kFloorGeom);
   Set(floor, "type", "plane");
@@ -250,7 +250,7 @@ void AddCamera(const char* name, const Eigen::Vector3d& p_WEye, const Eigen::Vec
 
 // Both look at the space before the robot, `overview` over its shoulder: the robot does not hide
 // what comes across its front, and what comes does not hide the robot.
-void AddCameras(const Scenario& scenario, XMLElement* worldbody) {
+void AddCameras(const scenarios::Scenario& scenario, XMLElement* worldbody) {
   const Pose& X_WB = scenario.X_WB;
   const Eigen::Vector3d target = X_WB * Eigen::Vector3d(0.35, 0, 0.2);
   AddCamera(kOverviewCamera, X_WB * Eigen::Vector3d(-1.55, -1.75, 1.6), target,
@@ -259,7 +259,7 @@ void AddCameras(const Scenario& scenario, XMLElement* worldbody) {
             X_WB.Rotate(Eigen::Vector3d::UnitX()), worldbody);
 }
 
-void AddStaticBox(const StaticBox& box, XMLElement* worldbody) {
+void AddStaticBox(const scenarios::StaticBox& box, XMLElement* worldbody) {
   XMLElement* body = Append(worldbody, "body");
   Set(body, "name", box.name);
   SetPose(body, box.X_WO);
@@ -270,19 +270,23 @@ void AddStaticBox(const StaticBox& box, XMLElement* worldbody) {
 }
 
 // X_OA of the appearance in the obstacle's frame: at its foot, looking where it goes.
-Pose AppearancePose(const MovingObstacle& obstacle) {
+Pose AppearancePose(const scenarios::MovingObstacle& obstacle) {
   struct FirstLeg {
-    Eigen::Vector3d operator()(const LinearMotion& motion) const { return motion.direction; }
-    Eigen::Vector3d operator()(const WaypointMotion& motion) const {
+    Eigen::Vector3d operator()(const scenarios::LinearMotion& motion) const {
+      return motion.direction;
+    }
+    Eigen::Vector3d operator()(const scenarios::WaypointMotion& motion) const {
       return motion.points_m.at(1) - motion.points_m.at(0);
     }
-    Eigen::Vector3d operator()(const AcceleratedMotion& motion) const { return motion.direction; }
-    Eigen::Vector3d operator()(const CircleMotion& motion) const {
+    Eigen::Vector3d operator()(const scenarios::AcceleratedMotion& motion) const {
+      return motion.direction;
+    }
+    Eigen::Vector3d operator()(const scenarios::CircleMotion& motion) const {
       const double angle_rad = motion.start_angle_rad;
       const Eigen::Vector3d left(-std::sin(angle_rad), std::cos(angle_rad), 0);
       return motion.clockwise ? Eigen::Vector3d(-left) : left;
     }
-    Eigen::Vector3d operator()(const RandomWalkMotion& motion) const {
+    Eigen::Vector3d operator()(const scenarios::RandomWalkMotion& motion) const {
       return {std::cos(motion.heading_rad), std::sin(motion.heading_rad), 0};
     }
   };
@@ -293,7 +297,8 @@ Pose AppearancePose(const MovingObstacle& obstacle) {
   return Pose::FromRollPitchYaw({0, 0, yaw}, {0, 0, -HalfExtents(obstacle.shape).z()});
 }
 
-void AddPicture(const MovingObstacle& obstacle, const std::string& path, XMLElement* body) {
+void AddPicture(const scenarios::MovingObstacle& obstacle, const std::string& path,
+                XMLElement* body) {
   XMLDocument document;
   LoadModelFile(path, &document);
   tinyxml2::XMLPrinter printer;
@@ -312,9 +317,9 @@ void AddPicture(const MovingObstacle& obstacle, const std::string& path, XMLElem
   }
 }
 
-void AddMovingObstacle(const Scenario& scenario, std::size_t index, const std::string& models_dir,
-                       XMLElement* worldbody) {
-  const MovingObstacle& obstacle = scenario.moving_obstacles[index];
+void AddMovingObstacle(const scenarios::Scenario& scenario, std::size_t index,
+                       const std::string& models_dir, XMLElement* worldbody) {
+  const scenarios::MovingObstacle& obstacle = scenario.moving_obstacles[index];
   XMLElement* body = Append(worldbody, "body");
   Set(body, "name", obstacle.name);
   Set(body, "mocap", "true");
@@ -332,7 +337,7 @@ void AddMovingObstacle(const Scenario& scenario, std::size_t index, const std::s
       models_dir + "/" + obstacle.appearance + "/" + obstacle.appearance + ".xml";
   if (!std::filesystem::is_regular_file(path)) {
     const std::string key = "moving_obstacles[" + std::to_string(index) + "].appearance";
-    throw WrongValue(scenario, key, "there is no " + path);
+    throw scenarios::WrongValue(scenario, key, "there is no " + path);
   }
   AddPicture(obstacle, path, body);
 }
@@ -348,13 +353,14 @@ void CollectNames(const XMLElement* element, std::set<std::string>* names) {
 }
 
 // MuJoCo knows one body and one geom of a name.
-void RefuseNamesOfTheRobot(const Scenario& scenario, const XMLElement* worldbody) {
+void RefuseNamesOfTheRobot(const scenarios::Scenario& scenario, const XMLElement* worldbody) {
   std::set<std::string> taken;
   CollectNames(worldbody->FirstChildElement(), &taken);
   const auto check = [&](const std::string& list, std::size_t i, const std::string& name) {
     if (taken.count(name) == 0) return;
-    throw WrongValue(scenario, list + "[" + std::to_string(i) + "].name",
-                     "'" + name + "' is the name of a part of the robot '" + scenario.robot + "'");
+    throw scenarios::WrongValue(
+        scenario, list + "[" + std::to_string(i) + "].name",
+        "'" + name + "' is the name of a part of the robot '" + scenario.robot + "'");
   };
   for (std::size_t i = 0; i < scenario.static_boxes.size(); ++i) {
     check("static_boxes", i, scenario.static_boxes[i].name);
@@ -366,7 +372,8 @@ void RefuseNamesOfTheRobot(const Scenario& scenario, const XMLElement* worldbody
 
 }  // namespace
 
-std::string BuildWorldXml(const Scenario& scenario, const std::vector<std::string>& mount_links,
+std::string BuildWorldXml(const scenarios::Scenario& scenario,
+                          const std::vector<std::string>& mount_links,
                           const std::string& models_dir) {
   XMLDocument document;
   XMLElement* world = document.NewElement("mujoco");
@@ -381,7 +388,7 @@ std::string BuildWorldXml(const Scenario& scenario, const std::vector<std::strin
     MergeRobot(scenario, models_dir + "/" + scenario.robot + "/" + scenario.robot + ".xml", world);
     RefuseNamesOfTheRobot(scenario, worldbody);
   }
-  for (const StaticBox& box : scenario.static_boxes) AddStaticBox(box, worldbody);
+  for (const scenarios::StaticBox& box : scenario.static_boxes) AddStaticBox(box, worldbody);
   for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
     AddMovingObstacle(scenario, i, models_dir, worldbody);
   }
@@ -399,4 +406,4 @@ std::string BuildWorldXml(const Scenario& scenario, const std::vector<std::strin
   return printer.CStr();
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/scenario.h"
+#include "sidestep/scenarios/scenario.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 
 /// Names in a world's model that do not come from the scenario.
 inline constexpr const char* kRobotBody = "robot";  ///< at X_WB; holds the robot's bodies
@@ -36,7 +36,8 @@ inline constexpr const char* kTopCamera = "top";
 ///
 /// @throws InputError for a model file that is missing, is not MJCF, refers to other files, or
 /// cannot be merged.
-std::string BuildWorldXml(const Scenario& scenario, const std::vector<std::string>& mount_links,
+std::string BuildWorldXml(const scenarios::Scenario& scenario,
+                          const std::vector<std::string>& mount_links,
                           const std::string& models_dir);
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

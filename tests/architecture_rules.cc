@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <set>
 #include <sstream>
 #include <string_view>
+
+#include "tests/defined_types.h"
 
 namespace sidestep {
 namespace {
@@ -13,6 +16,7 @@ namespace {
 using Names = std::set<std::string>;
 
 const Names kOtherFolders = {"cmake", "docs", "examples", "models", "tests", ".ci", ".github"};
+const std::string kPrefix = "sidestep/";  // of the headers of modules
 const std::string kBeforeAPath = " \t\n\"'`=:(,[<";
 
 bool StartsWith(std::string_view text, std::string_view prefix) {
@@ -83,6 +87,8 @@ class Checker {
       }
     }
     for (const ModuleRule& rule : rules_) CheckModule(rule);
+    CheckOthers();
+    CheckTypes();
     return violations_;
   }
 
@@ -131,7 +137,7 @@ class Checker {
         continue;
       for (const Include& include : Includes(text)) {
         CheckInclude(rule, path, include);
-        const std::string used = TopFolder(include.name);
+        const std::string used = TopFolder(PathOf(include));
         if (!include.quoted || used == rule.name || !IsModule(used)) continue;
         in_all.insert(used);
         if (EndsWith(path, ".h")) in_headers.insert(used);
@@ -142,12 +148,8 @@ class Checker {
 
   void CheckInclude(const ModuleRule& rule, const std::string& path, const Include& include) {
     if (include.quoted) {
-      const std::string used = TopFolder(include.name);
-      const bool exists = tree_.count(include.name) + tree_.count(include.name + ".in") > 0;
-      if (!exists) {
-        Complain(path, include.line,
-                 "no file " + include.name + " (quoted names begin at the repository root)");
-      } else if (used != rule.name && !Holds(rule.modules, used)) {
+      const std::string used = TopFolder(PathOf(include));
+      if (CheckExists(path, include) && used != rule.name && !Holds(rule.modules, used)) {
         Complain(path, include.line, rule.name + "/ may not include " + include.name);
       }
       return;
@@ -158,6 +160,55 @@ class Checker {
     if (IsForEveryone(include.name)) return;
     if (std::none_of(rule.libraries.begin(), rule.libraries.end(), begins)) {
       Complain(path, include.line, rule.name + "/ may not include <" + include.name + ">");
+    }
+  }
+
+  // Where in the tree a quoted name lies; empty where it does not begin as such names do.
+  static std::string PathOf(const Include& include) {
+    if (StartsWith(include.name, kPrefix)) return include.name.substr(kPrefix.size());
+    return StartsWith(include.name, "tests/") ? include.name : "";
+  }
+
+  bool CheckExists(const std::string& path, const Include& include) {
+    const std::string used = PathOf(include);
+    const bool exists = !used.empty() && tree_.count(used) + tree_.count(used + ".in") > 0 &&
+                        (IsModule(TopFolder(used)) || used == include.name);
+    if (!exists) {
+      Complain(path, include.line,
+               "no file " + include.name + " (quoted names begin with sidestep/<module>/)");
+    }
+    return exists;
+  }
+
+  // Tests and examples may use every module, by the same names.
+  void CheckOthers() {
+    for (const auto& [path, text] : tree_) {
+      if (IsModule(TopFolder(path)) || !(EndsWith(path, ".h") || EndsWith(path, ".cc"))) continue;
+      if (StartsWith(path, "tests/package/outside/")) continue;  // somebody else's project
+      for (const Include& include : Includes(text)) {
+        if (include.quoted) CheckExists(path, include);
+      }
+    }
+  }
+
+  // Two types of one name in one namespace break the rule of one definition, and no tool says so:
+  // the linker takes either one's functions for both. A module's own lie in its own namespace.
+  void CheckTypes() {
+    std::map<std::string, std::string> where;
+    for (const auto& [path, text] : tree_) {
+      if (!(EndsWith(path, ".h") || EndsWith(path, ".cc"))) continue;
+      const std::string module = TopFolder(path);
+      const std::string home = module == "core" ? "sidestep::" : "sidestep::" + module + "::";
+      for (const DefinedType& type : FindDefinedTypes(text)) {
+        const auto [first, is_new] = where.insert({type.name, path});
+        // Each test is a program of its own; only what it shares with others must be unique.
+        if (!is_new && (EndsWith(path, ".h") || !StartsWith(path, "tests/"))) {
+          Complain(path, type.line, type.name + " is defined in " + first->second + " too");
+        }
+        if (IsModule(module) && !StartsWith(type.name, home)) {
+          Complain(path, type.line, type.name + " lies outside " + home);
+        }
+      }
     }
   }
 
@@ -203,7 +254,8 @@ class Checker {
 
 const std::vector<ModuleRule>& ModuleRules() {
   static const std::vector<ModuleRule> rules = {
-      {"core", {}, {"yaml-cpp/", "hdf5.h"}},
+      {"core", {}, {"yaml-cpp/", "fmt/"}},
+      {"record", {"core"}, {"hdf5.h"}},
       {"robot", {"core"}, {}},
       {"sdf", {"core"}, {"hwy/", "tbb/"}},
       {"planner", {"core", "robot", "sdf"}, {"ceres/", "ompl/", "hwy/"}},
@@ -214,17 +266,17 @@ const std::vector<ModuleRule>& ModuleRules() {
        {"core", "robot", "control"},
        {"franka/", "librealsense2/", "apriltag/", "opencv2/"}},
       {"bench",
-       {"core", "robot", "sdf", "planner", "control", "scenarios"},
+       {"core", "record", "robot", "sdf", "planner", "control", "scenarios"},
        {"nlohmann/", "sqlite3.h", "benchmark/", "hwy/", "itk"}},
       {"render",
-       {"core", "robot", "scenarios", "sim"},
+       {"core", "record", "robot", "scenarios", "sim"},
        {"mujoco/", "GL/", "libavcodec/", "libavformat/", "libavutil/", "libswscale/"}},
       {"import",
        {"core", "robot", "sdf"},
        {"urdf_parser/", "urdf_model/", "assimp/", "tinyxml2.h"}},
       {"cli",
-       {"core", "robot", "sdf", "planner", "control", "scenarios", "sim", "hardware", "bench",
-        "render", "import"},
+       {"core", "record", "robot", "sdf", "planner", "control", "scenarios", "sim", "hardware",
+        "bench", "render", "import"},
        {"CLI/", "nlohmann/", "gnu/libc-version.h"}},
   };
   return rules;

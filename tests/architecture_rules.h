@@ -26,10 +26,12 @@ using SourceTree = std::map<std::string, std::string>;
 SourceTree ReadSourceTree(const std::filesystem::path& root);
 
 /// What breaks the rules, one line each, `FILE:LINE: WHY` or `FILE: WHY`. Checked are:
-///  - includes: module headers and libraries against `rules`, quoted names from the root;
+///  - includes: module headers and libraries against `rules`; quoted names as they are installed,
+///    "sidestep/<module>/<file>", but for those of tests/;
 ///  - links: a module's CMakeLists.txt names exactly the modules that its files include, and those
 ///    that its headers include are not private;
 ///  - headers: `#pragma once`;
+///  - types: none of one name twice in a namespace, and each in that of its module;
 ///  - the top level: no folder but the modules and a few known ones;
 ///  - paths: no file names a folder that only one machine has.
 std::vector<std::string> FindViolations(const SourceTree& tree,

@@ -41,12 +41,14 @@ const std::vector<ModuleRule> kRules = {{"base", {}, {"lib/"}}, {"top", {"base"}
 SourceTree SoundTree() {
   return {
       {"base/CMakeLists.txt", "sidestep_module(base SOURCES a.cc DEPENDS Eigen3::Eigen)\n"},
-      {"base/a.h", "#pragma once\n#include <Eigen/Core>\n#include <vector>\n"},
-      {"base/a.cc", "#include \"base/a.h\"\n\n#include <lib/lib.h>\n"},
+      {"base/a.h",
+       "#pragma once\n#include <Eigen/Core>\n#include <vector>\n"
+       "namespace sidestep::base {\nstruct A {};\n}\n"},
+      {"base/a.cc", "#include \"sidestep/base/a.h\"\n\n#include <lib/lib.h>\n"},
       {"top/CMakeLists.txt", "sidestep_module(top SOURCES b.cc DEPENDS sidestep::base)\n"},
-      {"top/b.h", "#pragma once\n#include \"base/a.h\"\n"},
-      {"top/b.cc", "#include \"top/b.h\"\n"},
-      {"tests/b_test.cc", "#include <lib/lib.h>\n#include \"top/b.h\"\n"},
+      {"top/b.h", "#pragma once\n#include \"sidestep/base/a.h\"\n"},
+      {"top/b.cc", "#include \"sidestep/top/b.h\"\n"},
+      {"tests/b_test.cc", "#include <lib/lib.h>\n#include \"sidestep/top/b.h\"\n"},
       {"README.md", "Text.\n"},
   };
 }
@@ -76,14 +78,26 @@ TEST_P(ArchitectureBreach, IsFoundAndNothingElse) {
 INSTANTIATE_TEST_SUITE_P(
     Kinds, ArchitectureBreach,
     ::testing::Values(
-        Breach{"WrongWayArrow", "top/b.cc", "#include \"top/b.h\"\n#include \"tests/b_test.cc\"\n",
+        Breach{"WrongWayArrow", "top/b.cc",
+               "#include \"sidestep/top/b.h\"\n#include \"tests/b_test.cc\"\n",
                "top/b.cc:2: top/ may not include tests/b_test.cc"},
         Breach{"ForbiddenLibrary", "top/b.cc", "// x\n  #  include <lib/lib.h>  // y\n",
                "top/b.cc:2: top/ may not include <lib/lib.h>"},
         Breach{"UnknownHeader", "base/a.cc", "#include <other.h>\n",
                "base/a.cc:1: base/ may not include <other.h>"},
         Breach{"NameNotFromTheRoot", "top/b.cc", "#include \"b.h\"\n",
-               "top/b.cc:1: no file b.h (quoted names begin at the repository root)"},
+               "top/b.cc:1: no file b.h (quoted names begin with sidestep/<module>/)"},
+        Breach{"NameFromTheRoot", "top/b.cc",
+               "#include \"sidestep/top/b.h\"\n#include \"base/a.h\"\n",
+               "top/b.cc:2: no file base/a.h (quoted names begin with sidestep/<module>/)"},
+        Breach{"TestThatNamesFromTheRoot", "tests/b_test.cc", "#include \"top/b.h\"\n",
+               "tests/b_test.cc:1: no file top/b.h (quoted names begin with sidestep/<module>/)"},
+        Breach{"TypeDefinedTwice", "base/c.h",
+               "#pragma once\nnamespace sidestep::base {\nclass A : public X<int> {};\n}\n",
+               "base/c.h:3: sidestep::base::A is defined in base/a.h too"},
+        Breach{"TypeOutsideItsModule", "base/c.h",
+               "#pragma once\nnamespace sidestep {\nenum class C { kOne };\n}\n",
+               "base/c.h:3: sidestep::C lies outside sidestep::base::"},
         Breach{"NoPragmaOnce", "base/a.h", "#include <vector>\n",
                "base/a.h: a header without #pragma once"},
         Breach{"LinkWithoutInclude", "base/CMakeLists.txt",
@@ -105,9 +119,9 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(ArchitectureChecker, FindsAnArrowThatPointsBack) {
   SourceTree tree = SoundTree();
-  tree["base/a.cc"] = "#include \"top/b.h\"\n";
+  tree["base/a.cc"] = "#include \"sidestep/top/b.h\"\n";
   EXPECT_THAT(FindViolations(tree, kRules),
-              ElementsAre("base/a.cc:1: base/ may not include top/b.h",
+              ElementsAre("base/a.cc:1: base/ may not include sidestep/top/b.h",
                           "base/CMakeLists.txt: does not link top, which is included"));
 }
 

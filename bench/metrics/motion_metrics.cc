@@ -1,12 +1,12 @@
-#include "bench/metrics/motion_metrics.h"
+#include "sidestep/bench/metrics/motion_metrics.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "planner/gp_trajectory.h"
+#include "sidestep/planner/gp_trajectory.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -19,19 +19,19 @@ bool AtGoal(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const Eigen::Vec
          v.cwiseAbs().maxCoeff() <= kGoalSpeed;
 }
 
-double TimeToGoal(const Recording& recording) {
+double TimeToGoal(const record::Recording& recording) {
   for (const ControlSample& tick : recording.control) {
     if (AtGoal(tick.q, tick.v, recording.q_goal)) return tick.t.seconds();
   }
   return kNaN;
 }
 
-double GoalError(const Recording& recording) {
+double GoalError(const record::Recording& recording) {
   if (recording.control.empty()) return kNaN;
   return (recording.control.back().q - recording.q_goal).cwiseAbs().maxCoeff();
 }
 
-double GpCostOfMotion(const Recording& recording) {
+double GpCostOfMotion(const record::Recording& recording) {
   const auto& control = recording.control;
   if (control.empty()) return kNaN;
   std::vector<std::size_t> picks;
@@ -52,10 +52,10 @@ double GpCostOfMotion(const Recording& recording) {
     motion.q.col(k) = control[picks[static_cast<std::size_t>(k)]].q;
     motion.v.col(k) = control[picks[static_cast<std::size_t>(k)]].v;
   }
-  return ComputeGpCost(motion, /*qc=*/1.0);
+  return planner::ComputeGpCost(motion, /*qc=*/1.0);
 }
 
-double JerkRms(const Recording& recording) {
+double JerkRms(const record::Recording& recording) {
   const double goal_s = TimeToGoal(recording);
   double sum = 0, count = 0;
   for (std::size_t i = 1; i < recording.control.size(); ++i) {
@@ -69,7 +69,7 @@ double JerkRms(const Recording& recording) {
   return count > 0 ? std::sqrt(sum / count) : kNaN;
 }
 
-double TrackingError(const Recording& recording) {
+double TrackingError(const record::Recording& recording) {
   double worst = recording.control.empty() ? kNaN : 0;
   for (const ControlSample& tick : recording.control) {
     worst = std::max(worst, (tick.q_command - tick.q).cwiseAbs().maxCoeff());
@@ -77,7 +77,7 @@ double TrackingError(const Recording& recording) {
   return worst;
 }
 
-double VelocityUse(const Recording& recording) {
+double VelocityUse(const record::Recording& recording) {
   if (recording.v_max.size() == 0 || recording.control.empty()) return kNaN;
   double worst = 0;
   for (const ControlSample& tick : recording.control) {
@@ -86,4 +86,4 @@ double VelocityUse(const Recording& recording) {
   return worst;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,4 +1,4 @@
-#include "bench/metrics/prediction_metrics.h"
+#include "sidestep/bench/metrics/prediction_metrics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 constexpr double kTimeEpsilon = 1e-9;  // s; recorded times are sums of steps, rounded
@@ -30,7 +30,7 @@ std::optional<std::size_t> FindAtOrAfter(const Series& series, EpisodeTime t, Ti
 }
 
 // Where every obstacle truly was; empty outside the recording.
-std::vector<Eigen::Vector3d> TruePositions(const Recording& recording, EpisodeTime t) {
+std::vector<Eigen::Vector3d> TruePositions(const record::Recording& recording, EpisodeTime t) {
   const auto after =
       FindAtOrAfter(recording.truth, t, [](const TruthSample& sample) { return sample.t; });
   if (!after) return {};
@@ -54,7 +54,7 @@ std::optional<Eigen::Vector3d> PredictedPosition(const PredictedObject& object, 
 
 }  // namespace
 
-double PredictionError(const Recording& recording, HorizonOffset ahead) {
+double PredictionError(const record::Recording& recording, HorizonOffset ahead) {
   double sum = 0, count = 0;
   for (const CycleRecord& cycle : recording.cycles) {
     const std::vector<Eigen::Vector3d> now = TruePositions(recording, cycle.t);
@@ -74,20 +74,20 @@ double PredictionError(const Recording& recording, HorizonOffset ahead) {
   return count > 0 ? std::sqrt(sum / count) : std::numeric_limits<double>::quiet_NaN();
 }
 
-double PredictionErrorAfter100Ms(const Recording& recording) {
+double PredictionErrorAfter100Ms(const record::Recording& recording) {
   return PredictionError(recording, HorizonOffset(0.1));
 }
-double PredictionErrorAfter300Ms(const Recording& recording) {
+double PredictionErrorAfter300Ms(const record::Recording& recording) {
   return PredictionError(recording, HorizonOffset(0.3));
 }
-double PredictionErrorAfter500Ms(const Recording& recording) {
+double PredictionErrorAfter500Ms(const record::Recording& recording) {
   return PredictionError(recording, HorizonOffset(0.5));
 }
-double PredictionErrorAfter1000Ms(const Recording& recording) {
+double PredictionErrorAfter1000Ms(const record::Recording& recording) {
   return PredictionError(recording, HorizonOffset(1));
 }
-double PredictionErrorAfter2000Ms(const Recording& recording) {
+double PredictionErrorAfter2000Ms(const record::Recording& recording) {
   return PredictionError(recording, HorizonOffset(2));
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,10 +1,10 @@
-#include "bench/metrics/registry.h"
+#include "sidestep/bench/metrics/registry.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 #define SIDESTEP_METRIC(name, unit, lower_is_better, meaning, compute, file) \
-  double compute(const Recording&);
-#include "bench/metrics/metrics.def"
+  double compute(const record::Recording&);
+#include "sidestep/bench/metrics/metrics.def"
 #undef SIDESTEP_METRIC
 
 namespace {
@@ -12,7 +12,7 @@ namespace {
 constexpr Metric kMetrics[] = {
 #define SIDESTEP_METRIC(name, unit, lower_is_better, meaning, compute, file) \
   {name, unit, lower_is_better, meaning, &(compute)},
-#include "bench/metrics/metrics.def"
+#include "sidestep/bench/metrics/metrics.def"
 #undef SIDESTEP_METRIC
 };
 
@@ -20,4 +20,4 @@ constexpr Metric kMetrics[] = {
 
 std::span<const Metric> Metrics() { return kMetrics; }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -3,9 +3,9 @@
 #include <span>
 #include <string>
 
-#include "core/recording.h"
+#include "sidestep/record/recording.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// One number about an episode, from its recording alone. NaN where it does not apply.
 struct Metric {
@@ -13,10 +13,10 @@ struct Metric {
   const char* unit;  ///< "1" for a ratio, "count" for a whole number
   bool lower_is_better;
   const char* meaning;  ///< one line
-  double (*compute)(const Recording&);
+  double (*compute)(const record::Recording&);
 };
 
 /// Every metric, in the order of reports. To add one: metrics.def.
 std::span<const Metric> Metrics();
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,15 +1,15 @@
 #pragma once
 
-#include "core/recording.h"
+#include "sidestep/record/recording.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// When the robot first touched anything it may not touch [s]; NaN if never, or without truth.
-double FirstContact(const Recording& recording);
+double FirstContact(const record::Recording& recording);
 /// Least true clearance over the episode [m]; negative: penetration. NaN without truth.
-double MinClearance(const Recording& recording);
+double MinClearance(const record::Recording& recording);
 /// How many planning cycles were run, and how many plans the robot was given.
-double Replans(const Recording& recording);
-double PlansAccepted(const Recording& recording);
+double Replans(const record::Recording& recording);
+double PlansAccepted(const record::Recording& recording);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -15,49 +15,50 @@
 #include <random>
 #include <vector>
 
-#include "bench/micro/furnished_room.h"
-#include "sdf/composite_field.h"
-#include "sdf/dense_composite.h"
-#include "sdf/map/fast_distance_transform.h"
-#include "sdf/map/object_field.h"
+#include "sidestep/bench/micro/furnished_room.h"
+#include "sidestep/sdf/composite_field.h"
+#include "sidestep/sdf/dense_composite.h"
+#include "sidestep/sdf/map/fast_distance_transform.h"
+#include "sidestep/sdf/map/object_field.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 constexpr double kClamp_m = 0.4;
 
-std::shared_ptr<const SdfGrid> RoomField(int n) {
-  return std::make_shared<const SdfGrid>(FastDistanceTransform().Compute(FurnishedRoom(n, {})));
+std::shared_ptr<const sdf::SdfGrid> RoomField(int n) {
+  return std::make_shared<const sdf::SdfGrid>(
+      sdf::FastDistanceTransform().Compute(FurnishedRoom(n, {})));
 }
 
 double Uniform(std::mt19937_64& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }
 
-CompositeField CubesInARoom(int num_objects) {
+sdf::CompositeField CubesInARoom(int num_objects) {
   constexpr int kCells = 96;
   const double cell_m = kRoom_m / kCells;
   OccupancyGrid cube({Eigen::Vector3d::Constant(-2 * cell_m), cell_m, {5, 5, 5}});
   std::fill(cube.cells.begin(), cube.cells.end(), 1);
-  const auto field_O = std::make_shared<const SdfGrid>(MakeObjectField(cube, kClamp_m));
+  const auto field_O = std::make_shared<const sdf::SdfGrid>(sdf::MakeObjectField(cube, kClamp_m));
   std::mt19937_64 random(7);
   const auto anywhere = [&](double low, double high) {
     return Eigen::Vector3d(Uniform(random, low, high), Uniform(random, low, high),
                            Uniform(random, low, high));
   };
-  std::vector<MovingField> objects;
+  std::vector<sdf::MovingField> objects;
   for (int n = 0; n < num_objects; ++n) {
     const Pose X_WO = Pose::FromRollPitchYaw(anywhere(-3, 3), anywhere(0.2, kRoom_m - 0.2));
     objects.push_back({field_O, [X_WO](EpisodeTime) { return X_WO; }});
   }
-  return CompositeField(RoomField(kCells), std::move(objects), kClamp_m);
+  return sdf::CompositeField(RoomField(kCells), std::move(objects), kClamp_m);
 }
 
 // The arms' points, one arm after the other.
-PointColumns ArmPoints(int num_arms) {
+sdf::PointColumns ArmPoints(int num_arms) {
   constexpr int kPoints = 64;
   std::mt19937_64 random(8);
-  PointColumns p_WQ(num_arms * kPoints, 3);
+  sdf::PointColumns p_WQ(num_arms * kPoints, 3);
   for (int arm = 0; arm < num_arms; ++arm) {
     for (int axis = 0; axis < 3; ++axis) {
       const double low = Uniform(random, 0.1, kRoom_m - 0.87);
@@ -77,8 +78,8 @@ void CountQueries(Eigen::Index num_points, benchmark::State& state) {
 }
 
 void Lazy(benchmark::State& state, int num_arms) {
-  const CompositeField composite = CubesInARoom(static_cast<int>(state.range(0)));
-  const PlacedComposite field = composite.At(EpisodeTime(0));
+  const sdf::CompositeField composite = CubesInARoom(static_cast<int>(state.range(0)));
+  const sdf::PlacedComposite field = composite.At(EpisodeTime(0));
   const Eigen::Matrix3Xd p_WQ = ArmPoints(num_arms).transpose();
   for (auto _ : state) {
     for (Eigen::Index s = 0; s < p_WQ.cols(); ++s) {
@@ -89,10 +90,10 @@ void Lazy(benchmark::State& state, int num_arms) {
 }
 
 void LazyBatched(benchmark::State& state, int num_arms) {
-  const CompositeField composite = CubesInARoom(static_cast<int>(state.range(0)));
-  const PlacedComposite field = composite.At(EpisodeTime(0));
-  const PointColumns p_WQ = ArmPoints(num_arms);
-  SampleColumns samples;
+  const sdf::CompositeField composite = CubesInARoom(static_cast<int>(state.range(0)));
+  const sdf::PlacedComposite field = composite.At(EpisodeTime(0));
+  const sdf::PointColumns p_WQ = ArmPoints(num_arms);
+  sdf::SampleColumns samples;
   for (auto _ : state) {
     field.SampleMany(p_WQ, samples);
     benchmark::DoNotOptimize(samples.distance_m.data());
@@ -102,7 +103,7 @@ void LazyBatched(benchmark::State& state, int num_arms) {
 }
 
 void Place(benchmark::State& state) {
-  const CompositeField composite = CubesInARoom(static_cast<int>(state.range(0)));
+  const sdf::CompositeField composite = CubesInARoom(static_cast<int>(state.range(0)));
   for (auto _ : state) benchmark::DoNotOptimize(composite.At(EpisodeTime(0)));
 }
 
@@ -122,7 +123,7 @@ BENCHMARK_CAPTURE(LazyBatched, near, 1)->Name("query/lazy_batched_one_arm")->App
 BENCHMARK(Place)->Name("composite/place")->Apply(Objects);
 
 // The pillar on its way through the room, a cell a step.
-std::vector<MovingField> Pillar(int n) {
+std::vector<sdf::MovingField> Pillar(int n) {
   const double cell_m = kRoom_m / n;
   OccupancyGrid shape(GridSpec{Eigen::Vector3d::Zero(), cell_m, {1, 1, 1}});
   for (int a = 0; a < 3; ++a) {
@@ -130,7 +131,8 @@ std::vector<MovingField> Pillar(int n) {
         static_cast<int>(std::lround(kPillarSize_m(a) / cell_m));
   }
   shape.cells.assign(shape.spec.num_cells(), 1);
-  const auto field_O = std::make_shared<const SdfGrid>(MakeObjectField(shape, 10 * cell_m));
+  const auto field_O =
+      std::make_shared<const sdf::SdfGrid>(sdf::MakeObjectField(shape, 10 * cell_m));
   return {{field_O, [cell_m](EpisodeTime t) {
              return Pose::Translation(kPillar + Eigen::Vector3d(cell_m / 2, 0, cell_m / 2) +
                                       Eigen::Vector3d(0, t.seconds() * cell_m, 0));
@@ -141,7 +143,7 @@ EpisodeTime Step(int step, int n) { return EpisodeTime(step % (n / 2)); }
 
 void Copy(benchmark::State& state) {
   const auto room = RoomField(static_cast<int>(state.range(0)));
-  AlignedVector<float> copy = room->distance_m();
+  sdf::AlignedVector<float> copy = room->distance_m();
   for (auto _ : state) {
     std::copy(room->distance_m().begin(), room->distance_m().end(), copy.begin());
     benchmark::DoNotOptimize(copy.data());
@@ -152,11 +154,11 @@ void Copy(benchmark::State& state) {
 void Dense(benchmark::State& state) {
   const int n = static_cast<int>(state.range(0));
   const auto room = RoomField(n);
-  const std::vector<MovingField> pillar = Pillar(n);
-  AlignedVector<float> distance_m = room->distance_m();
+  const std::vector<sdf::MovingField> pillar = Pillar(n);
+  sdf::AlignedVector<float> distance_m = room->distance_m();
   int step = 0;
   for (auto _ : state) {
-    ComposeDense(*room, pillar, Step(step++, n), distance_m);
+    sdf::ComposeDense(*room, pillar, Step(step++, n), distance_m);
     benchmark::DoNotOptimize(distance_m.data());
     benchmark::ClobberMemory();
   }
@@ -164,7 +166,7 @@ void Dense(benchmark::State& state) {
 
 void Incremental(benchmark::State& state) {
   const int n = static_cast<int>(state.range(0));
-  DenseSteps steps(RoomField(n), Pillar(n));
+  sdf::DenseSteps steps(RoomField(n), Pillar(n));
   int step = 0;
   for (auto _ : state) benchmark::DoNotOptimize(steps.At(Step(step++, n)));
 }
@@ -177,4 +179,4 @@ BENCHMARK(Dense)->Name("composite/dense")->Apply(Sizes);
 BENCHMARK(Incremental)->Name("composite/incremental")->Apply(Sizes);
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::bench

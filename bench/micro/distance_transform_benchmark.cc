@@ -13,10 +13,10 @@
 #include <cstdint>
 #include <limits>
 
-#include "bench/micro/furnished_room.h"
-#include "sdf/map/fast_distance_transform.h"
+#include "sidestep/bench/micro/furnished_room.h"
+#include "sidestep/sdf/map/fast_distance_transform.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 // For as long as it lives, Highway picks none but these instruction sets.
@@ -32,13 +32,14 @@ class OnlyTargets {
   }
 };
 
-void Transform(benchmark::State& state, DistanceConvention convention, double max_distance_cells) {
+void Transform(benchmark::State& state, sdf::DistanceConvention convention,
+               double max_distance_cells) {
   const OccupancyGrid grid = FurnishedRoom(static_cast<int>(state.range(0)), kPillar);
   const std::size_t size = grid.cells.size();
   const auto distance_m = hwy::AllocateAligned<float>(size);
-  DistanceTransformOptions options{.convention = convention};
+  sdf::DistanceTransformOptions options{.convention = convention};
   options.max_distance_m = max_distance_cells * grid.spec.cell_m;
-  FastDistanceTransform transform;
+  sdf::FastDistanceTransform transform;
   transform.Compute(grid, options, {distance_m.get(), size});  // Touches all memory once.
   for (auto _ : state) {
     transform.Compute(grid, options, {distance_m.get(), size});
@@ -48,7 +49,7 @@ void Transform(benchmark::State& state, DistanceConvention convention, double ma
   state.counters["filled_%"] = 100.0 * static_cast<double>(grid.CountFilled()) / size;
 }
 
-void TransformWithAvx2(benchmark::State& state, DistanceConvention convention,
+void TransformWithAvx2(benchmark::State& state, sdf::DistanceConvention convention,
                        double max_distance_cells) {
   if ((hwy::SupportedTargets() & HWY_AVX2) == 0) {
     state.SkipWithError("this machine has no AVX2");
@@ -61,7 +62,7 @@ void TransformWithAvx2(benchmark::State& state, DistanceConvention convention,
 void SimpleTransform(benchmark::State& state) {
   const OccupancyGrid grid = FurnishedRoom(static_cast<int>(state.range(0)), kPillar);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(ComputeSignedDistance(grid, DistanceConvention::kBwdist));
+    benchmark::DoNotOptimize(sdf::ComputeSignedDistance(grid, sdf::DistanceConvention::kBwdist));
   }
 }
 
@@ -71,8 +72,8 @@ void Sizes(benchmark::internal::Benchmark* benchmark) {
   benchmark->Arg(64)->Arg(96)->Arg(128)->Arg(256)->Arg(320)->Unit(benchmark::kMillisecond);
 }
 
-constexpr DistanceConvention kBwdist = DistanceConvention::kBwdist;
-constexpr DistanceConvention kSurface = DistanceConvention::kSurface;
+constexpr sdf::DistanceConvention kBwdist = sdf::DistanceConvention::kBwdist;
+constexpr sdf::DistanceConvention kSurface = sdf::DistanceConvention::kSurface;
 BENCHMARK_CAPTURE(Transform, full, kBwdist, kUnbounded)->Name("edt/full")->Apply(Sizes);
 BENCHMARK_CAPTURE(Transform, bounded, kBwdist, 10)->Name("edt/bounded10")->Apply(Sizes);
 BENCHMARK_CAPTURE(Transform, full, kSurface, kUnbounded)->Name("edt/full_surface")->Apply(Sizes);
@@ -86,4 +87,4 @@ BENCHMARK_CAPTURE(TransformWithAvx2, bounded, kBwdist, 10)
 BENCHMARK(SimpleTransform)->Name("edt/simple")->Arg(96)->Arg(256)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -9,10 +9,10 @@
 #include <memory>
 #include <vector>
 
-#include "bench/micro/furnished_room.h"
-#include "sdf/world_model.h"
+#include "sidestep/bench/micro/furnished_room.h"
+#include "sidestep/sdf/world_model.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 constexpr double kScanPeriod_s = 1.0 / 30;
@@ -51,10 +51,10 @@ std::vector<Scan> Round(int n) {
 void Frame(benchmark::State& state) {
   const int n = static_cast<int>(state.range(0));
   std::vector<Scan> scans = Round(n);
-  WorldModelOptions options;
+  sdf::WorldModelOptions options;
   options.grid = RoomGrid(n);
   options.max_distance_m = 0.4;
-  const auto world = MakeWorldModel(options);
+  const auto world = sdf::MakeWorldModel(options);
   std::size_t frame = 0;
   const auto observe = [&] {
     Scan& scan = scans[frame % scans.size()];
@@ -64,7 +64,7 @@ void Frame(benchmark::State& state) {
   while (frame < scans.size()) observe();
   world->TakeTimes();
   for (auto _ : state) observe();
-  const WorldModelTimes times = world->TakeTimes();
+  const sdf::WorldModelTimes times = world->TakeTimes();
   const auto microseconds = [&](double seconds) {
     return benchmark::Counter(1e6 * seconds, benchmark::Counter::kAvgIterations);
   };
@@ -81,4 +81,4 @@ BENCHMARK(Frame)
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,9 +1,9 @@
-#include "bench/micro/furnished_room.h"
+#include "sidestep/bench/micro/furnished_room.h"
 
 #include <algorithm>
 #include <array>
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 void AddBox(const Eigen::Vector3d& lower_m, const Eigen::Vector3d& upper_m, OccupancyGrid& grid) {
@@ -47,4 +47,4 @@ OccupancyGrid FurnishedRoom(int n, const std::optional<Eigen::Vector3d>& p_WPill
   return grid;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

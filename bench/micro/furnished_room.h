@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "core/grid.h"
+#include "sidestep/core/grid.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// The scene of the field benchmarks: a table on four legs and a cabinet with shelves in the
 /// workspace of Finean et al. (ICAPS 2021), a cube of 3.84 m in n^3 cells, and a pillar of
@@ -20,4 +20,4 @@ GridSpec RoomGrid(int n);
 /// @param p_WPillar lower corner of the pillar [m]; without it the room has none.
 OccupancyGrid FurnishedRoom(int n, const std::optional<Eigen::Vector3d>& p_WPillar);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -6,32 +6,33 @@
 #include <memory>
 #include <variant>
 
-#include "core/shape.h"
-#include "planner/registry.h"
-#include "robot/robot_model.h"
-#include "scenarios/scenario.h"
-#include "sdf/composite_field.h"
-#include "sdf/map/distance_transform.h"
-#include "sdf/map/object_field.h"
+#include "sidestep/core/shape.h"
+#include "sidestep/planner/registry.h"
+#include "sidestep/robot/robot_model.h"
+#include "sidestep/scenarios/scenario.h"
+#include "sidestep/sdf/composite_field.h"
+#include "sidestep/sdf/map/distance_transform.h"
+#include "sidestep/sdf/map/object_field.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 // The scene with its obstacle at `speed_m_s`, `ahead_m` further along than the scenario says. The
 // field knows its motion.
 struct Scene {
   explicit Scene(double speed_m_s, double ahead_m = 0)
-      : scenario(LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/hsr_walkway.yaml")),
-        robot(RobotModel::Load(SIDESTEP_SOURCE_DIR "/models", scenario.robot, scenario.X_WB)) {
-    MovingObstacle& obstacle = scenario.moving_obstacles.front();
-    auto& motion = std::get<LinearMotion>(obstacle.motion);
+      : scenario(scenarios::LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/hsr_walkway.yaml")),
+        robot(
+            robot::RobotModel::Load(SIDESTEP_SOURCE_DIR "/models", scenario.robot, scenario.X_WB)) {
+    scenarios::MovingObstacle& obstacle = scenario.moving_obstacles.front();
+    auto& motion = std::get<scenarios::LinearMotion>(obstacle.motion);
     motion.speed_m_s = speed_m_s;
     motion.start_m += ahead_m * motion.direction;
     OccupancyGrid boxes(scenario.grid);
     for (int k = 0; k < boxes.spec.size[2]; ++k) {
       for (int j = 0; j < boxes.spec.size[1]; ++j) {
         for (int i = 0; i < boxes.spec.size[0]; ++i) {
-          for (const StaticBox& box : scenario.static_boxes) {
+          for (const scenarios::StaticBox& box : scenario.static_boxes) {
             const Eigen::Vector3d p_OQ = box.X_WO.Inverse() * boxes.spec.Center(i, j, k);
             if (SignedDistance(Box{box.size_m}, p_OQ) < 0) {
               boxes.cells[boxes.spec.Index(i, j, k)] = 1;
@@ -41,17 +42,17 @@ struct Scene {
       }
     }
     const double clamp_m = scenario.epsilon_m + robot.largest_sphere_radius_m();
-    const auto shape_field =
-        std::make_shared<SdfGrid>(MakeShapeField(obstacle.shape, scenario.grid.cell_m, clamp_m));
-    field = std::make_unique<CompositeField>(
-        std::make_shared<SdfGrid>(ComputeSignedDistance(boxes)),
-        std::vector<MovingField>{
+    const auto shape_field = std::make_shared<sdf::SdfGrid>(
+        sdf::MakeShapeField(obstacle.shape, scenario.grid.cell_m, clamp_m));
+    field = std::make_unique<sdf::CompositeField>(
+        std::make_shared<sdf::SdfGrid>(sdf::ComputeSignedDistance(boxes)),
+        std::vector<sdf::MovingField>{
             {shape_field, [obstacle](EpisodeTime t) { return PoseAt(obstacle, t); }}},
         clamp_m);
   }
 
-  PlanRequest Request() const {
-    PlanRequest request;
+  planner::PlanRequest Request() const {
+    planner::PlanRequest request;
     request.field = field.get();
     request.step_s = scenario.step_s;
     request.num_states = static_cast<int>(std::lround(scenario.horizon_s / scenario.step_s)) + 1;
@@ -61,18 +62,18 @@ struct Scene {
     return request;
   }
 
-  Scenario scenario;
-  RobotModel robot;
-  std::unique_ptr<const CompositeField> field;
+  scenarios::Scenario scenario;
+  robot::RobotModel robot;
+  std::unique_ptr<const sdf::CompositeField> field;
 };
 
 void BM_ColdPlan(benchmark::State& state) {
   const Scene scene(0.1 * static_cast<double>(state.range(0)));
-  const auto planner = MakePlanner("gpmp", scene.robot, {});
-  const PlanRequest request = scene.Request();
+  const auto planner = planner::MakePlanner("gpmp", scene.robot, {});
+  const planner::PlanRequest request = scene.Request();
   int iterations = 0;
   for (auto _ : state) {
-    const PlanResult result = planner->Plan(request);
+    const planner::PlanResult result = planner->Plan(request);
     iterations = result.iterations;
     benchmark::DoNotOptimize(result.clearance.least_m);
   }
@@ -88,15 +89,15 @@ BENCHMARK(BM_ColdPlan)
 // The obstacle turns out to be `error_cm` further along than the running plan thought.
 void BM_WarmPlan(benchmark::State& state) {
   const Scene scene(1.4);
-  const auto planner = MakePlanner("gpmp", scene.robot, {});
-  PlanRequest request = scene.Request();
+  const auto planner = planner::MakePlanner("gpmp", scene.robot, {});
+  planner::PlanRequest request = scene.Request();
   request.initial = planner->Plan(request).trajectory;
   request.num_fixed = 3;
   const Scene moved(1.4, 0.01 * static_cast<double>(state.range(0)));
   request.field = moved.field.get();
   int iterations = 0;
   for (auto _ : state) {
-    const PlanResult result = planner->Plan(request);
+    const planner::PlanResult result = planner->Plan(request);
     iterations = result.iterations;
     benchmark::DoNotOptimize(result.clearance.least_m);
   }
@@ -105,4 +106,4 @@ void BM_WarmPlan(benchmark::State& state) {
 BENCHMARK(BM_WarmPlan)->ArgName("error_cm")->Arg(0)->Arg(2)->Arg(10)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <ctime>
 
-#include "bench/peers/worker.h"
+#include "sidestep/bench/peers/worker.h"
 
 namespace {
 

@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <limits>
 
-#include "bench/peers/worker.h"
-#include "core/cpu_time.h"
-#include "sdf/map/fast_distance_transform.h"
+#include "sidestep/bench/peers/worker.h"
+#include "sidestep/core/cpu_time.h"
+#include "sidestep/sdf/map/fast_distance_transform.h"
 
 int main() {
   using namespace sidestep;
-  FastDistanceTransform transform;
-  AlignedVector<float> aligned;
+  sdf::FastDistanceTransform transform;
+  sdf::AlignedVector<float> aligned;
   return ServeTransform(
       [&](const OccupancyGrid& grid, const std::string& variant, std::vector<float>& distance) {
-        DistanceTransformOptions options{.convention = DistanceConvention::kBwdist};
+        sdf::DistanceTransformOptions options{.convention = sdf::DistanceConvention::kBwdist};
         if (variant == "bounded10") options.max_distance_m = 10;
         aligned.resize(grid.cells.size());
         const double begin_s = ThreadCpuSeconds();

@@ -1,9 +1,9 @@
-#include "bench/peers/worker.h"
+#include "sidestep/bench/peers/worker.h"
 
 #include <fstream>
 #include <iostream>
 
-namespace sidestep {
+namespace sidestep::bench {
 
 int ServeTransform(const TimedTransform& transform) {
   OccupancyGrid grid;
@@ -33,4 +33,4 @@ int ServeTransform(const TimedTransform& transform) {
   return 0;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

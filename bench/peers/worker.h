@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "core/grid.h"
+#include "sidestep/core/grid.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// A distance transform under test: signed distances in cells, between centres, of a grid whose
 /// cells have the edge 1. Returns the CPU seconds it took, without what its caller's formats cost.
@@ -18,4 +18,4 @@ using TimedTransform = std::function<double(const OccupancyGrid& grid, const std
 /// @return the exit code of the process.
 int ServeTransform(const TimedTransform& transform);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

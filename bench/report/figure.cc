@@ -1,11 +1,11 @@
-#include "bench/report/figure.h"
+#include "sidestep/bench/report/figure.h"
 
 #include <cmath>
 #include <filesystem>
 #include <sstream>
 #include <stdexcept>
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 // Okabe and Ito's colours, which the colour-blind can tell apart.
@@ -127,4 +127,4 @@ std::string ToGnuplot(const Figure& figure, const std::string& stem) {
   return script.str();
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// One curve of a panel.
 struct Series {
@@ -39,4 +39,4 @@ struct Figure {
 /// @throws std::invalid_argument for series whose columns differ in length.
 std::string ToGnuplot(const Figure& figure, const std::string& stem);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

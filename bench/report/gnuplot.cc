@@ -1,12 +1,12 @@
-#include "bench/report/gnuplot.h"
+#include "sidestep/bench/report/gnuplot.h"
 
 #include <array>
 #include <cstdio>
 #include <filesystem>
 
-#include "bench/result_file.h"
+#include "sidestep/bench/result_file.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 // Runs a shell command; returns what it printed, or nothing at all if it failed.
@@ -48,4 +48,4 @@ bool DrawFigure(const Figure& figure, const std::string& stem) {
   return succeeded;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "bench/report/figure.h"
+#include "sidestep/bench/report/figure.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// The version of the gnuplot that pictures are drawn with, e.g. "gnuplot 5.4 patchlevel 4"; empty
 /// if there is none.
@@ -19,4 +19,4 @@ inline constexpr const char* kGnuplotRemedy = "apt-get install gnuplot-nox";
 /// there. @throws InputError if that cannot be written.
 bool DrawFigure(const Figure& figure, const std::string& stem);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,13 +1,13 @@
-#include "bench/report/html_page.h"
+#include "sidestep/bench/report/html_page.h"
 
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
 
-#include "core/input_error.h"
+#include "sidestep/core/input_error.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 constexpr const char* kStyle = R"(
@@ -113,4 +113,4 @@ std::string Format(const char* format, double value) {
   return text;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

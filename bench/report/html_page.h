@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// A page that stands alone: text, tables and pictures in one file, to be read top to bottom. Texts
 /// are plain: what means something in HTML is escaped.
@@ -29,4 +29,4 @@ class HtmlPage {
 /// A number as printf would show it, "-" if it is not finite.
 std::string Format(const char* format, double value);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,10 +1,10 @@
-#include "bench/reproduce/closed_loop.h"
+#include "sidestep/bench/reproduce/closed_loop.h"
 
 #include <limits>
 
-#include "bench/reproduce/open_loop_experiment.h"
+#include "sidestep/bench/reproduce/open_loop_experiment.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 constexpr int kMainGrid = 96;           // voxels per side of the publication's figures
@@ -37,14 +37,15 @@ void TimeStep(const FieldScene& scene, const GridSpec& grid, double margin_m, in
 
 }  // namespace
 
-Scenario PublishedClosedLoop(Scenario scenario, double speed_m_s, int voxels_per_side) {
+scenarios::Scenario PublishedClosedLoop(scenarios::Scenario scenario, double speed_m_s,
+                                        int voxels_per_side) {
   scenario.epsilon_m = 0.3;
   scenario.sigma_obs = 0.05;
   scenario.num_interpolated = 0;
   scenario.sensor.rate_hz = scenario.replan_rate_hz;
   scenario.predictor = "two_frame";
   scenario.grid = ClosedLoopGrid(voxels_per_side);
-  for (MovingObstacle& obstacle : scenario.moving_obstacles) {
+  for (scenarios::MovingObstacle& obstacle : scenario.moving_obstacles) {
     std::visit([&](auto& motion) { motion.speed_m_s = speed_m_s; }, obstacle.motion);
   }
   return scenario;
@@ -57,8 +58,9 @@ void TimeWholeRun(const FieldScene& scene, const GridSpec& grid, double margin_m
   }
 }
 
-ClosedLoopStudy RunClosedLoopStudy(const Scenario& scenario, const RobotModel& robot,
-                                   const WorldFactory& make_world, const ClosedLoopOptions& options,
+ClosedLoopStudy RunClosedLoopStudy(const scenarios::Scenario& scenario,
+                                   const robot::RobotModel& robot, const WorldFactory& make_world,
+                                   const ClosedLoopOptions& options,
                                    const std::function<void(const std::string&)>& on_part) {
   const auto say = [&on_part](const std::string& what) {
     if (on_part) on_part(what);
@@ -66,7 +68,8 @@ ClosedLoopStudy RunClosedLoopStudy(const Scenario& scenario, const RobotModel& r
   ClosedLoopStudy study;
   const auto run = [&](const std::string& knowledge, int voxels_per_side) {
     say(knowledge + ", " + std::to_string(voxels_per_side) + " voxels per side");
-    Scenario published = PublishedClosedLoop(scenario, options.speed_m_s, voxels_per_side);
+    scenarios::Scenario published =
+        PublishedClosedLoop(scenario, options.speed_m_s, voxels_per_side);
     published.knowledge = knowledge;
     return RunEpisode(published, robot, make_world);
   };
@@ -77,7 +80,7 @@ ClosedLoopStudy RunClosedLoopStudy(const Scenario& scenario, const RobotModel& r
     LoopRate& rate = study.rates.emplace_back();
     rate.voxels_per_side = voxels;
     rate.cycle_s = run("prediction", voxels).times.at("cycle");
-    const Scenario published = PublishedClosedLoop(scenario, options.speed_m_s, voxels);
+    const scenarios::Scenario published = PublishedClosedLoop(scenario, options.speed_m_s, voxels);
     std::vector<double> init_s;
     TimeStep(Walkway(options.speed_m_s), published.grid,
              published.epsilon_m + robot.largest_sphere_radius_m(), kStepOfRates, init_s,
@@ -91,4 +94,4 @@ ClosedLoopStudy RunClosedLoopStudy(const Scenario& scenario, const RobotModel& r
   return study;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -5,14 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "bench/episode.h"
-#include "bench/report/figure.h"
-#include "bench/reproduce/csv_table.h"
-#include "bench/reproduce/field_timer.h"
-#include "robot/robot_model.h"
-#include "scenarios/scenario.h"
+#include "sidestep/bench/episode.h"
+#include "sidestep/bench/report/figure.h"
+#include "sidestep/bench/reproduce/csv_table.h"
+#include "sidestep/bench/reproduce/field_timer.h"
+#include "sidestep/robot/robot_model.h"
+#include "sidestep/scenarios/scenario.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// The closed-loop study of Finean, Merkt & Havoutis (ICAPS 2021), on this loop.
 struct ClosedLoopOptions {
@@ -22,7 +22,8 @@ struct ClosedLoopOptions {
 
 /// The scenario with the settings of the published closed loop: sigma, epsilon, no interpolated
 /// costs, an observation each cycle, a cube of cells of 4 cm from (-1, -1, -1).
-Scenario PublishedClosedLoop(Scenario scenario, double speed_m_s, int voxels_per_side);
+scenarios::Scenario PublishedClosedLoop(scenarios::Scenario scenario, double speed_m_s,
+                                        int voxels_per_side);
 
 /// How fast the loop turns and a field is predicted, in one grid. One core, CPU time.
 struct LoopRate {
@@ -46,12 +47,13 @@ struct ClosedLoopStudy {
 
 /// @param scenario to be run with the published settings; its task must be resolved.
 /// @param on_part called with what is about to be done.
-ClosedLoopStudy RunClosedLoopStudy(const Scenario& scenario, const RobotModel& robot,
-                                   const WorldFactory& make_world, const ClosedLoopOptions& options,
+ClosedLoopStudy RunClosedLoopStudy(const scenarios::Scenario& scenario,
+                                   const robot::RobotModel& robot, const WorldFactory& make_world,
+                                   const ClosedLoopOptions& options,
                                    const std::function<void(const std::string&)>& on_part = {});
 
 /// The 435 predictions of a scene, each step from the second on predicting all that remain.
 void TimeWholeRun(const FieldScene& scene, const GridSpec& grid, double margin_m,
                   WholeRunTimes& times);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

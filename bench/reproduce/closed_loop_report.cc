@@ -1,4 +1,4 @@
-#include "bench/reproduce/closed_loop_report.h"
+#include "sidestep/bench/reproduce/closed_loop_report.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,11 +6,11 @@
 #include <limits>
 #include <utility>
 
-#include "bench/report/html_page.h"
-#include "bench/reproduce/published_columns.h"
-#include "bench/statistics.h"
+#include "sidestep/bench/report/html_page.h"
+#include "sidestep/bench/reproduce/published_columns.h"
+#include "sidestep/bench/statistics.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 constexpr double kPlotStep_s = 0.01;  // a point each, of the control rate's 1 kHz
@@ -83,8 +83,9 @@ std::vector<std::string> Cells(const Summary& summary) {
           Format("%.3g", summary.mean_ms), Format("%.3g", summary.greatest_ms)};
 }
 
-Panel JointPanel(const std::string& title, const std::string& y_label, const Recording& recording,
-                 Eigen::VectorXd ControlSample::*value, bool with_key) {
+Panel JointPanel(const std::string& title, const std::string& y_label,
+                 const record::Recording& recording, Eigen::VectorXd ControlSample::*value,
+                 bool with_key) {
   Panel panel;
   panel.title = title;
   panel.x_label = "s";
@@ -209,7 +210,8 @@ Figure MakeJointsFigure(const ClosedLoopStudy& study) {
   Figure figure;
   figure.columns = 2;
   figure.panel_height_px = 340;
-  const Recording &update = study.update.recording, &prediction = study.prediction.recording;
+  const record::Recording &update = study.update.recording,
+                          &prediction = study.prediction.recording;
   figure.panels = {
       JointPanel("Execute and update: positions", "rad", update, &ControlSample::q, false),
       JointPanel("Prediction: positions", "rad", prediction, &ControlSample::q, false),
@@ -311,4 +313,4 @@ std::string MakeClosedLoopPage(const ClosedLoopOptions& options, const ClosedLoo
   return page.ToText();
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

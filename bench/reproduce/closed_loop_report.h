@@ -3,11 +3,11 @@
 #include <optional>
 #include <string>
 
-#include "bench/report/figure.h"
-#include "bench/reproduce/closed_loop.h"
-#include "bench/reproduce/csv_table.h"
+#include "sidestep/bench/report/figure.h"
+#include "sidestep/bench/reproduce/closed_loop.h"
+#include "sidestep/bench/reproduce/csv_table.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// What was measured by the authors, as far as it is given.
 struct PublishedRates {
@@ -39,4 +39,4 @@ std::string MakeClosedLoopPage(const ClosedLoopOptions& options, const ClosedLoo
                                const PublishedRates& published, const std::string& joints_svg,
                                const std::string& rates_svg);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

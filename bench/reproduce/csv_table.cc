@@ -1,4 +1,4 @@
-#include "bench/reproduce/csv_table.h"
+#include "sidestep/bench/reproduce/csv_table.h"
 
 #include <charconv>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/input_error.h"
+#include "sidestep/core/input_error.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 constexpr std::size_t kMaxShown = 40;  // characters of a broken field in a message
@@ -104,4 +104,4 @@ void CsvTable::AddRow(std::vector<std::optional<double>> row) {
   rows_.push_back(std::move(row));
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

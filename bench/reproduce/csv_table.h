@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// A table of numbers with a header, as the published results come. Fields may be empty.
 class CsvTable {
@@ -34,4 +34,4 @@ class CsvTable {
   std::vector<std::vector<std::optional<double>>> rows_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,12 +1,12 @@
-#include "bench/reproduce/field_scene.h"
+#include "sidestep/bench/reproduce/field_scene.h"
 
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
 
-#include "bench/reproduce/published_rasteriser.h"
+#include "sidestep/bench/reproduce/published_rasteriser.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -77,4 +77,4 @@ OccupancyGrid MovingOccupancy(const FieldScene& scene, const GridSpec& grid, Epi
   return occupancy;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "bench/reproduce/open_loop_experiment.h"
-#include "core/grid.h"
-#include "core/time.h"
+#include "sidestep/bench/reproduce/open_loop_experiment.h"
+#include "sidestep/core/grid.h"
+#include "sidestep/core/time.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// A world without a robot, to time and compare distance fields in: boxes that stand and boxes that
 /// move.
@@ -42,4 +42,4 @@ GridSpec PublishedTimingGrid(int voxels_per_side);
 OccupancyGrid StaticOccupancy(const FieldScene& scene, const GridSpec& grid);
 OccupancyGrid MovingOccupancy(const FieldScene& scene, const GridSpec& grid, EpisodeTime t);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,4 +1,4 @@
-#include "bench/reproduce/field_timer.h"
+#include "sidestep/bench/reproduce/field_timer.h"
 
 #include <algorithm>
 #include <array>
@@ -7,38 +7,39 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/cpu_time.h"
-#include "sdf/map/object_field.h"
-#include "sdf/prediction/registry.h"
-#include "sdf/tracking/segmentation.h"
-#include "sdf/tracking/tracked_object.h"
+#include "sidestep/core/cpu_time.h"
+#include "sidestep/sdf/map/object_field.h"
+#include "sidestep/sdf/prediction/registry.h"
+#include "sidestep/sdf/tracking/segmentation.h"
+#include "sidestep/sdf/tracking/tracked_object.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
-constexpr DistanceConvention kConvention = DistanceConvention::kBwdist;
+constexpr sdf::DistanceConvention kConvention = sdf::DistanceConvention::kBwdist;
 constexpr int kQueries = 20000;
 
-std::vector<Component> FindObjects(const FieldScene& scene, const OccupancyGrid& standing,
-                                   EpisodeTime t) {
+std::vector<sdf::Component> FindObjects(const FieldScene& scene, const OccupancyGrid& standing,
+                                        EpisodeTime t) {
   OccupancyGrid moving = MovingOccupancy(scene, standing.spec, t);
   for (std::size_t i = 0; i < moving.cells.size(); ++i) {
     if (standing.cells[i] != 0) moving.cells[i] = 0;
   }
-  return FindComponents(moving);
+  return sdf::FindComponents(moving);
 }
 
-const Component& Nearest(const std::vector<Component>& components, const Eigen::Vector3d& p_W) {
+const sdf::Component& Nearest(const std::vector<sdf::Component>& components,
+                              const Eigen::Vector3d& p_W) {
   return *std::min_element(components.begin(), components.end(),
-                           [&](const Component& a, const Component& b) {
+                           [&](const sdf::Component& a, const sdf::Component& b) {
                              return (a.centroid_m - p_W).norm() < (b.centroid_m - p_W).norm();
                            });
 }
 
 // The cell of `grid` where the first cell of a shape comes to lie. It is found from the shape's
 // padded field as ComposeDense does it, so that both round alike.
-std::array<int, 3> Corner(const GridSpec& grid, const GridSpec& shape_O, const MovingField& object,
-                          EpisodeTime t) {
+std::array<int, 3> Corner(const GridSpec& grid, const GridSpec& shape_O,
+                          const sdf::MovingField& object, EpisodeTime t) {
   const GridSpec& field_O = object.field_O->spec();
   const Eigen::Vector3d offset_m =
       object.X_WO(t).translation() + field_O.first_center_m - grid.first_center_m;
@@ -71,22 +72,23 @@ FieldTimer::FieldTimer(const FieldScene& scene, const GridSpec& grid, double mar
       dense_m_(grid.num_cells()),
       queries_W_(RandomPoints(grid)) {
   if (!(first < second)) throw std::invalid_argument("FieldTimer: needs first < second");
-  const std::vector<Component> before = FindObjects(scene, static_occupancy_, first);
-  const std::vector<Component> after = FindObjects(scene, static_occupancy_, second);
-  const std::shared_ptr<const ObstaclePredictor> predictor = MakePredictor("two_frame");
+  const std::vector<sdf::Component> before = FindObjects(scene, static_occupancy_, first);
+  const std::vector<sdf::Component> after = FindObjects(scene, static_occupancy_, second);
+  const std::shared_ptr<const sdf::ObstaclePredictor> predictor = sdf::MakePredictor("two_frame");
 
   double begin_s = ThreadCpuSeconds();
-  static_W_ = std::make_shared<const SdfGrid>(
+  static_W_ = std::make_shared<const sdf::SdfGrid>(
       transform_.Compute(static_occupancy_, {.convention = kConvention}));
   init_s_ = ThreadCpuSeconds() - begin_s;
-  for (const Component& component : after) {
-    OccupancyGrid shape_O = CutOut(component, grid);
+  for (const sdf::Component& component : after) {
+    OccupancyGrid shape_O = sdf::CutOut(component, grid);
     shape_O.spec.first_center_m -= component.centroid_m;
     begin_s = ThreadCpuSeconds();
-    auto field_O = std::make_shared<const SdfGrid>(MakeObjectField(shape_O, margin_m, kConvention));
+    auto field_O =
+        std::make_shared<const sdf::SdfGrid>(sdf::MakeObjectField(shape_O, margin_m, kConvention));
     init_s_ += ThreadCpuSeconds() - begin_s;
 
-    auto object = std::make_shared<TrackedObject>();
+    auto object = std::make_shared<sdf::TrackedObject>();
     if (before.size() == after.size()) {
       object->history.push_back({first, Nearest(before, component.centroid_m).centroid_m});
     }
@@ -131,13 +133,13 @@ PredictionTimes FieldTimer::Time(EpisodeTime t) {
   };
   ComputeExact(PredictMap(t));
   times.full_s = lap();
-  ComposeDense(*static_W_, objects_, t, dense_m_);
+  sdf::ComposeDense(*static_W_, objects_, t, dense_m_);
   times.dense_s = lap();
   steps_->At(t);
   times.incremental_s = lap();
-  const CompositeField lazy(static_W_, objects_, margin_m_);
+  const sdf::CompositeField lazy(static_W_, objects_, margin_m_);
   times.lazy_s = lap();
-  DistanceSamples samples;
+  sdf::DistanceSamples samples;
   lazy.SampleMany(queries_W_, t, samples);
   times.query_s = lap() / static_cast<double>(queries_W_.cols());
   return times;
@@ -159,7 +161,7 @@ bool FieldTimer::HoldsAllObjects(EpisodeTime t) const {
 CompositeError FieldTimer::Compare(EpisodeTime t) {
   const OccupancyGrid map = PredictMap(t);
   ComputeExact(map);
-  ComposeDense(*static_W_, objects_, t, dense_m_);
+  sdf::ComposeDense(*static_W_, objects_, t, dense_m_);
   CompositeError error;
   for (std::size_t i = 0; i < exact_m_.size(); ++i) {
     const double difference_m = std::abs(dense_m_[i] - exact_m_[i]);
@@ -172,4 +174,4 @@ CompositeError FieldTimer::Compare(EpisodeTime t) {
   return error;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

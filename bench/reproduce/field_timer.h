@@ -5,16 +5,16 @@
 #include <optional>
 #include <vector>
 
-#include "bench/reproduce/field_scene.h"
-#include "core/grid.h"
-#include "core/time.h"
-#include "sdf/aligned_vector.h"
-#include "sdf/composite_field.h"
-#include "sdf/dense_composite.h"
-#include "sdf/map/fast_distance_transform.h"
-#include "sdf/map/sdf_grid.h"
+#include "sidestep/bench/reproduce/field_scene.h"
+#include "sidestep/core/grid.h"
+#include "sidestep/core/time.h"
+#include "sidestep/sdf/aligned_vector.h"
+#include "sidestep/sdf/composite_field.h"
+#include "sidestep/sdf/dense_composite.h"
+#include "sidestep/sdf/map/fast_distance_transform.h"
+#include "sidestep/sdf/map/sdf_grid.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// What making the field of one predicted moment cost [s, CPU], by the ways there are.
 struct PredictionTimes {
@@ -45,7 +45,7 @@ class FieldTimer {
 
   /// Making the static field and those of the objects [s, CPU].
   double init_s() const { return init_s_; }
-  const std::vector<MovingField>& objects() const { return objects_; }
+  const std::vector<sdf::MovingField>& objects() const { return objects_; }
 
   /// Grids are written to memory that is there already.
   PredictionTimes Time(EpisodeTime t);
@@ -63,12 +63,12 @@ class FieldTimer {
   OccupancyGrid static_occupancy_;
   std::vector<OccupancyGrid> shapes_O_;
   double init_s_ = 0;
-  std::shared_ptr<const SdfGrid> static_W_;
-  std::vector<MovingField> objects_;
-  FastDistanceTransform transform_;
-  AlignedVector<float> exact_m_, dense_m_;
-  std::optional<DenseSteps> steps_;
+  std::shared_ptr<const sdf::SdfGrid> static_W_;
+  std::vector<sdf::MovingField> objects_;
+  sdf::FastDistanceTransform transform_;
+  sdf::AlignedVector<float> exact_m_, dense_m_;
+  std::optional<sdf::DenseSteps> steps_;
   Eigen::Matrix3Xd queries_W_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

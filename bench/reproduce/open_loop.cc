@@ -1,10 +1,10 @@
-#include "bench/reproduce/open_loop.h"
+#include "sidestep/bench/reproduce/open_loop.h"
 
-#include "planner/gauss_newton.h"
-#include "planner/gp_trajectory.h"
-#include "planner/guarded_spheres.h"
+#include "sidestep/planner/gauss_newton.h"
+#include "sidestep/planner/gp_trajectory.h"
+#include "sidestep/planner/guarded_spheres.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 Trajectory StraightLine(const OpenLoopExperiment& experiment, const OpenLoopTask& task) {
@@ -20,8 +20,8 @@ Trajectory StraightLine(const OpenLoopExperiment& experiment, const OpenLoopTask
   return line;
 }
 
-GaussNewtonOptions Options(const OpenLoopExperiment& experiment) {
-  GaussNewtonOptions options;
+planner::GaussNewtonOptions Options(const OpenLoopExperiment& experiment) {
+  planner::GaussNewtonOptions options;
   options.epsilon_m = experiment.epsilon_m;
   options.sigma_obs = experiment.sigma_obs;
   options.num_interpolated = experiment.num_interpolated;
@@ -29,7 +29,7 @@ GaussNewtonOptions Options(const OpenLoopExperiment& experiment) {
   return options;
 }
 
-void AddEndPriors(GaussNewton& problem, const OpenLoopExperiment& experiment,
+void AddEndPriors(planner::GaussNewton& problem, const OpenLoopExperiment& experiment,
                   const OpenLoopTask& task) {
   const Eigen::VectorXd rest = Eigen::VectorXd::Zero(task.q_start.size());
   problem.AddPrior(0, task.q_start, rest, experiment.sigma_prior);
@@ -38,13 +38,13 @@ void AddEndPriors(GaussNewton& problem, const OpenLoopExperiment& experiment,
 
 }  // namespace
 
-int CountCollidingStates(const RobotModel& robot, const Trajectory& trajectory,
-                         const std::vector<const DistanceField*>& truth) {
-  const std::vector<int> guarded = GuardedSpheres(robot);
+int CountCollidingStates(const robot::RobotModel& robot, const Trajectory& trajectory,
+                         const std::vector<const sdf::DistanceField*>& truth) {
+  const std::vector<int> guarded = planner::GuardedSpheres(robot);
   int colliding = 0;
   for (int k = 0; k < trajectory.num_states(); ++k) {
-    const SphereCenters centers = robot.ComputeSphereCenters(trajectory.q.col(k), false);
-    const DistanceField& map = *truth[static_cast<std::size_t>(k)];
+    const robot::SphereCenters centers = robot.ComputeSphereCenters(trajectory.q.col(k), false);
+    const sdf::DistanceField& map = *truth[static_cast<std::size_t>(k)];
     bool touches = false;
     for (const int s : guarded) {
       const double distance_m = map.Sample(centers.p_WS.col(s), EpisodeTime()).distance_m;
@@ -55,14 +55,14 @@ int CountCollidingStates(const RobotModel& robot, const Trajectory& trajectory,
   return colliding;
 }
 
-OpenLoopResult RunOpenLoop(const OpenLoopExperiment& experiment, const RobotModel& robot,
+OpenLoopResult RunOpenLoop(const OpenLoopExperiment& experiment, const robot::RobotModel& robot,
                            const OpenLoopTask& task, const BelievedField& believed,
-                           const std::vector<const DistanceField*>& truth, bool once) {
+                           const std::vector<const sdf::DistanceField*>& truth, bool once) {
   const int K = experiment.num_states;
-  GaussNewton problem(robot, StraightLine(experiment, task), Options(experiment));
+  planner::GaussNewton problem(robot, StraightLine(experiment, task), Options(experiment));
   AddEndPriors(problem, experiment, task);
   OpenLoopResult result;
-  std::vector<const DistanceField*> fields(static_cast<std::size_t>(K), nullptr);
+  std::vector<const sdf::DistanceField*> fields(static_cast<std::size_t>(K), nullptr);
   const int num_solves = once ? 1 : K;
   for (int now = 0; now < num_solves; ++now) {
     if (now > 0) {
@@ -70,8 +70,8 @@ OpenLoopResult RunOpenLoop(const OpenLoopExperiment& experiment, const RobotMode
       problem.AddPrior(now, present.q.col(now), present.v.col(now), experiment.sigma_prior);
     }
     for (int k = now; k < K; ++k) {
-      const DistanceField* const field = &believed(now, k);
-      const DistanceField*& previous = fields[static_cast<std::size_t>(k)];
+      const sdf::DistanceField* const field = &believed(now, k);
+      const sdf::DistanceField*& previous = fields[static_cast<std::size_t>(k)];
       if (field == previous) continue;
       problem.SetField(k, *field, EpisodeTime());
       previous = field;
@@ -80,16 +80,16 @@ OpenLoopResult RunOpenLoop(const OpenLoopExperiment& experiment, const RobotMode
   }
   result.trajectory = problem.GetTrajectory();
 
-  GaussNewton judge(robot, result.trajectory, Options(experiment));
+  planner::GaussNewton judge(robot, result.trajectory, Options(experiment));
   AddEndPriors(judge, experiment, task);
   for (int k = 0; k < K; ++k) {
     judge.SetField(k, *truth[static_cast<std::size_t>(k)], EpisodeTime());
   }
-  const PlanCost cost = judge.ComputeCost();
+  const planner::PlanCost cost = judge.ComputeCost();
   result.gp_cost = cost.gp + cost.goal;
   result.obstacle_cost = cost.obstacle;
   result.colliding_states = CountCollidingStates(robot, result.trajectory, truth);
   return result;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

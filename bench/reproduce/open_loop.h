@@ -4,16 +4,16 @@
 #include <functional>
 #include <vector>
 
-#include "bench/reproduce/open_loop_experiment.h"
-#include "core/trajectory.h"
-#include "robot/robot_model.h"
-#include "sdf/distance_field.h"
+#include "sidestep/bench/reproduce/open_loop_experiment.h"
+#include "sidestep/core/trajectory.h"
+#include "sidestep/robot/robot_model.h"
+#include "sidestep/sdf/distance_field.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// What the planner believes at solve `now` of the world at step k >= now: one frozen field a step.
 /// Fields must outlive the run, and equal beliefs should be the same object.
-using BelievedField = std::function<const DistanceField&(int now, int k)>;
+using BelievedField = std::function<const sdf::DistanceField&(int now, int k)>;
 
 /// One planning task: from rest to rest.
 struct OpenLoopTask {
@@ -42,12 +42,12 @@ struct OpenLoopResult {
 /// @param believed what the planner is told; @param truth the map of each step.
 /// @param once stops after the first solve, as the paper's text has it for planners that know the
 /// world beforehand.
-OpenLoopResult RunOpenLoop(const OpenLoopExperiment& experiment, const RobotModel& robot,
+OpenLoopResult RunOpenLoop(const OpenLoopExperiment& experiment, const robot::RobotModel& robot,
                            const OpenLoopTask& task, const BelievedField& believed,
-                           const std::vector<const DistanceField*>& truth, bool once);
+                           const std::vector<const sdf::DistanceField*>& truth, bool once);
 
 /// Verdict `published_states` of a motion with a state for each map.
-int CountCollidingStates(const RobotModel& robot, const Trajectory& trajectory,
-                         const std::vector<const DistanceField*>& truth);
+int CountCollidingStates(const robot::RobotModel& robot, const Trajectory& trajectory,
+                         const std::vector<const sdf::DistanceField*>& truth);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,10 +1,10 @@
-#include "bench/reproduce/open_loop_experiment.h"
+#include "sidestep/bench/reproduce/open_loop_experiment.h"
 
 #include <algorithm>
 #include <array>
 #include <stdexcept>
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 // Written out, not summed up: 1.0 + 7 * 0.1 is not 1.7, and last bits decide which cell the box
@@ -96,4 +96,4 @@ OpenLoopExperiment MakeOpenLoopExperiment(const std::string& name) {
   throw std::invalid_argument("unknown experiment '" + name + "'");
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

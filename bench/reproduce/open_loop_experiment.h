@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/grid.h"
-#include "core/pose.h"
+#include "sidestep/core/grid.h"
+#include "sidestep/core/pose.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// An axis-aligned box.
 struct PublishedBox {
@@ -54,4 +54,4 @@ std::vector<std::string> OpenLoopExperimentNames();
 /// @throws std::invalid_argument for another name.
 OpenLoopExperiment MakeOpenLoopExperiment(const std::string& name);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,13 +1,13 @@
-#include "bench/reproduce/open_loop_outcomes.h"
+#include "sidestep/bench/reproduce/open_loop_outcomes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
-#include "bench/reproduce/published_columns.h"
+#include "sidestep/bench/reproduce/published_columns.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 bool IsExcludedSpeed(const OpenLoopExperiment& experiment, double speed_m_s) {
@@ -79,4 +79,4 @@ FilteredRows Filter(const std::vector<MatchedOutcomes>& rows, RowFilter filter,
   return left;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

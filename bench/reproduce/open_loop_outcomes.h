@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "bench/reproduce/csv_table.h"
-#include "bench/reproduce/open_loop_experiment.h"
-#include "sdf/world_model.h"
+#include "sidestep/bench/reproduce/csv_table.h"
+#include "sidestep/bench/reproduce/open_loop_experiment.h"
+#include "sidestep/sdf/world_model.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// What one run came to.
 struct OpenLoopOutcome {
@@ -20,7 +20,7 @@ struct OpenLoopOutcome {
 struct MatchedOutcomes {
   int pair = 0;
   double speed_m_s = 0;
-  std::map<Knowledge, OpenLoopOutcome> runs;
+  std::map<sdf::Knowledge, OpenLoopOutcome> runs;
 };
 
 /// The outcomes of a table with the published column names: ours, or a published one. A kind of
@@ -51,4 +51,4 @@ struct FilteredRows {
 FilteredRows Filter(const std::vector<MatchedOutcomes>& rows, RowFilter filter,
                     const OpenLoopExperiment& experiment);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

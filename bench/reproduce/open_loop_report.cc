@@ -1,17 +1,17 @@
-#include "bench/reproduce/open_loop_report.h"
+#include "sidestep/bench/reproduce/open_loop_report.h"
 
 #include <algorithm>
 #include <map>
 #include <utility>
 
-#include "bench/report/html_page.h"
+#include "sidestep/bench/report/html_page.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 constexpr double kPercent = 100;
 
-std::string Words(Knowledge knowledge) {
+std::string Words(sdf::Knowledge knowledge) {
   std::string words = ToString(knowledge);
   std::replace(words.begin(), words.end(), '_', ' ');
   return words;
@@ -29,7 +29,7 @@ struct Curves {
 };
 
 // One point a speed.
-Curves MakeCurves(const std::vector<MatchedOutcomes>& rows, Knowledge knowledge) {
+Curves MakeCurves(const std::vector<MatchedOutcomes>& rows, sdf::Knowledge knowledge) {
   struct Sums {
     int rows = 0, free = 0;
     double gp_cost = 0;
@@ -58,7 +58,7 @@ Curves MakeCurves(const std::vector<MatchedOutcomes>& rows, Knowledge knowledge)
 }
 
 void AddCurves(Figure& figure, const std::vector<MatchedOutcomes>& rows, bool is_published) {
-  for (const Knowledge knowledge : kAllKnowledge) {
+  for (const sdf::Knowledge knowledge : sdf::kAllKnowledge) {
     Curves curves = MakeCurves(rows, knowledge);
     if (curves.rate.x.empty()) continue;
     for (Series* series : {&curves.rate, &curves.cost}) {
@@ -240,7 +240,7 @@ void AddStatistics(HtmlPage& page, const std::vector<OpenLoopStatistics>& statis
 }  // namespace
 
 std::vector<VerdictCounts> CountVerdicts(const OpenLoopStudy& study) {
-  std::map<Knowledge, VerdictCounts> counts;
+  std::map<sdf::Knowledge, VerdictCounts> counts;
   for (const OpenLoopRow& row : study.rows) {
     for (const auto& [knowledge, entry] : row.cases) {
       VerdictCounts& sums = counts[knowledge];
@@ -301,4 +301,4 @@ std::string MakeOpenLoopPage(const OpenLoopExperiment& experiment,
   return page.ToText();
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

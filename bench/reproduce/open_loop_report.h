@@ -4,17 +4,17 @@
 #include <string>
 #include <vector>
 
-#include "bench/report/figure.h"
-#include "bench/reproduce/open_loop_outcomes.h"
-#include "bench/reproduce/open_loop_statistics.h"
-#include "bench/reproduce/open_loop_study.h"
-#include "bench/reproduce/published_table.h"
+#include "sidestep/bench/report/figure.h"
+#include "sidestep/bench/reproduce/open_loop_outcomes.h"
+#include "sidestep/bench/reproduce/open_loop_statistics.h"
+#include "sidestep/bench/reproduce/open_loop_study.h"
+#include "sidestep/bench/reproduce/published_table.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// How many rows of a kind of knowledge the verdicts call collision-free.
 struct VerdictCounts {
-  Knowledge knowledge = Knowledge::kStatic;
+  sdf::Knowledge knowledge = sdf::Knowledge::kStatic;
   int num_rows = 0;
   int free = 0;               ///< verdict published_states
   int truly_free_states = 0;  ///< of these, clear of the true boxes at the support states
@@ -43,4 +43,4 @@ std::string MakeOpenLoopPage(const OpenLoopExperiment& experiment,
                              const std::vector<OpenLoopStatistics>& statistics,
                              const std::string& svg_path);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,4 +1,4 @@
-#include "bench/reproduce/open_loop_statistics.h"
+#include "sidestep/bench/reproduce/open_loop_statistics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,11 @@
 #include <map>
 #include <set>
 
-#include "bench/statistics.h"
-#include "bench/statistics/resampling.h"
-#include "bench/statistics/signed_rank.h"
+#include "sidestep/bench/statistics.h"
+#include "sidestep/bench/statistics/resampling.h"
+#include "sidestep/bench/statistics/signed_rank.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 constexpr int kDraws = 2000;
@@ -26,8 +26,8 @@ struct Match {
   double CostDifference() const { return first.gp_cost - second.gp_cost; }
 };
 
-std::vector<Match> MatchRows(const std::vector<MatchedOutcomes>& rows, Knowledge first,
-                             Knowledge second) {
+std::vector<Match> MatchRows(const std::vector<MatchedOutcomes>& rows, sdf::Knowledge first,
+                             sdf::Knowledge second) {
   std::vector<Match> matches;
   for (const MatchedOutcomes& row : rows) {
     const auto a = row.runs.find(first), b = row.runs.find(second);
@@ -37,7 +37,7 @@ std::vector<Match> MatchRows(const std::vector<MatchedOutcomes>& rows, Knowledge
   return matches;
 }
 
-FreeRate Rate(const std::vector<MatchedOutcomes>& rows, Knowledge knowledge) {
+FreeRate Rate(const std::vector<MatchedOutcomes>& rows, sdf::Knowledge knowledge) {
   FreeRate rate;
   rate.knowledge = knowledge;
   for (const MatchedOutcomes& row : rows) {
@@ -113,7 +113,8 @@ double MedianCostDifference(const std::vector<const Match*>& matches) {
   return Quantile(std::move(differences), 0.5);
 }
 
-KnowledgeComparison Compare(const std::vector<Match>& matches, Knowledge first, Knowledge second) {
+KnowledgeComparison Compare(const std::vector<Match>& matches, sdf::Knowledge first,
+                            sdf::Knowledge second) {
   KnowledgeComparison comparison;
   comparison.first = first;
   comparison.second = second;
@@ -174,7 +175,7 @@ OpenLoopStatistics ComputeOpenLoopStatistics(const std::vector<MatchedOutcomes>&
   statistics.excluded_by_speed = left.excluded_by_speed;
   statistics.excluded_none_free = left.excluded_none_free;
 
-  std::map<Knowledge, std::map<double, std::vector<MatchedOutcomes>>> by_speed;
+  std::map<sdf::Knowledge, std::map<double, std::vector<MatchedOutcomes>>> by_speed;
   for (const MatchedOutcomes& row : left.rows) {
     for (const auto& [knowledge, run] : row.runs) by_speed[knowledge][row.speed_m_s].push_back(row);
   }
@@ -195,4 +196,4 @@ OpenLoopStatistics ComputeOpenLoopStatistics(const std::vector<MatchedOutcomes>&
   return statistics;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

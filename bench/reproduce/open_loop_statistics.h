@@ -2,16 +2,16 @@
 
 #include <vector>
 
-#include "bench/reproduce/open_loop_experiment.h"
-#include "bench/reproduce/open_loop_outcomes.h"
-#include "bench/statistics/proportions.h"
-#include "sdf/world_model.h"
+#include "sidestep/bench/reproduce/open_loop_experiment.h"
+#include "sidestep/bench/reproduce/open_loop_outcomes.h"
+#include "sidestep/bench/statistics/proportions.h"
+#include "sidestep/sdf/world_model.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// How often runs under one kind of knowledge are collision-free, and what they cost.
 struct FreeRate {
-  Knowledge knowledge = Knowledge::kStatic;
+  sdf::Knowledge knowledge = sdf::Knowledge::kStatic;
   double speed_m_s = 0;  ///< not used where all speeds are pooled
   int num_rows = 0, num_free = 0;
   Interval wilson;          ///< 95 %, as if rows were independent, which they are within a speed
@@ -39,7 +39,7 @@ struct SpeedComparison {
 /// Two kinds of knowledge over all speeds. Rows of one start and goal resemble each other, so
 /// intervals (95 %) come from a bootstrap over starts and goals, and there is no pooled test.
 struct KnowledgeComparison {
-  Knowledge first = Knowledge::kStatic, second = Knowledge::kStatic;
+  sdf::Knowledge first = sdf::Knowledge::kStatic, second = sdf::Knowledge::kStatic;
   int num_rows = 0;
   int only_first_free = 0, only_second_free = 0;
   double rate_difference = 0;  ///< of the share of collision-free rows, first minus second
@@ -64,4 +64,4 @@ OpenLoopStatistics ComputeOpenLoopStatistics(const std::vector<MatchedOutcomes>&
                                              RowFilter filter,
                                              const OpenLoopExperiment& experiment);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

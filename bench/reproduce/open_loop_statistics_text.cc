@@ -1,11 +1,11 @@
-#include "bench/reproduce/open_loop_statistics_text.h"
+#include "sidestep/bench/reproduce/open_loop_statistics_text.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -126,4 +126,4 @@ std::string Describe(const OpenLoopStatistics& statistics) {
   return text;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "bench/reproduce/open_loop_statistics.h"
+#include "sidestep/bench/reproduce/open_loop_statistics.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// A JSON array with an entry a filter and every figure under its name; what does not apply is
 /// null.
@@ -14,4 +14,4 @@ std::string ToJson(const std::vector<OpenLoopStatistics>& statistics);
 /// The chief figures in a few lines, for a terminal.
 std::string Describe(const OpenLoopStatistics& statistics);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,4 +1,4 @@
-#include "bench/reproduce/open_loop_study.h"
+#include "sidestep/bench/reproduce/open_loop_study.h"
 
 #include <algorithm>
 #include <mutex>
@@ -6,36 +6,37 @@
 #include <optional>
 #include <stdexcept>
 
-#include "bench/reproduce/parallel.h"
-#include "bench/reproduce/predicted_maps.h"
-#include "bench/reproduce/published_maps.h"
+#include "sidestep/bench/reproduce/parallel.h"
+#include "sidestep/bench/reproduce/predicted_maps.h"
+#include "sidestep/bench/reproduce/published_maps.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
-constexpr DistanceConvention kConvention = DistanceConvention::kBwdist;
+constexpr sdf::DistanceConvention kConvention = sdf::DistanceConvention::kBwdist;
 
 // What the planner believes at solve `now` of step k; `predicted` is asked under prediction only.
-BelievedField MakeBelief(Knowledge knowledge, const std::vector<const DistanceField*>& truth,
+BelievedField MakeBelief(sdf::Knowledge knowledge,
+                         const std::vector<const sdf::DistanceField*>& truth,
                          const BelievedField& predicted) {
-  const auto map = [&truth](int step) -> const DistanceField& {
+  const auto map = [&truth](int step) -> const sdf::DistanceField& {
     return *truth[static_cast<std::size_t>(step)];
   };
   switch (knowledge) {
-    case Knowledge::kStatic:
-      return [map](int, int) -> const DistanceField& { return map(0); };
-    case Knowledge::kExecuteAndUpdate:
-      return [map](int now, int) -> const DistanceField& { return map(now); };
-    case Knowledge::kPrediction:
+    case sdf::Knowledge::kStatic:
+      return [map](int, int) -> const sdf::DistanceField& { return map(0); };
+    case sdf::Knowledge::kExecuteAndUpdate:
+      return [map](int now, int) -> const sdf::DistanceField& { return map(now); };
+    case sdf::Knowledge::kPrediction:
       return predicted;
-    case Knowledge::kFullKnowledge:
-      return [map](int, int k) -> const DistanceField& { return map(k); };
+    case sdf::Knowledge::kFullKnowledge:
+      return [map](int, int k) -> const sdf::DistanceField& { return map(k); };
   }
   throw std::invalid_argument("not a kind of knowledge");
 }
 
-bool KnowsTheWorldBeforehand(Knowledge knowledge) {
-  return knowledge == Knowledge::kStatic || knowledge == Knowledge::kFullKnowledge;
+bool KnowsTheWorldBeforehand(sdf::Knowledge knowledge) {
+  return knowledge == sdf::Knowledge::kStatic || knowledge == sdf::Knowledge::kFullKnowledge;
 }
 
 }  // namespace
@@ -51,9 +52,10 @@ OpenLoopStudy RunOpenLoopStudy(const OpenLoopExperiment& experiment, const std::
   }
   const std::string& robot_file =
       options.intended_geometry ? experiment.own_robot : experiment.published_robot;
-  const RobotModel robot = RobotModel::FromFile(models_dir + "/" + robot_file, experiment.X_WB);
-  const RobotModel own_robot =
-      RobotModel::FromFile(models_dir + "/" + experiment.own_robot, experiment.X_WB);
+  const robot::RobotModel robot =
+      robot::RobotModel::FromFile(models_dir + "/" + robot_file, experiment.X_WB);
+  const robot::RobotModel own_robot =
+      robot::RobotModel::FromFile(models_dir + "/" + experiment.own_robot, experiment.X_WB);
 
   OpenLoopStudy study;
   study.ignored_spheres = robot.mount_spheres();
@@ -72,7 +74,7 @@ OpenLoopStudy RunOpenLoopStudy(const OpenLoopExperiment& experiment, const std::
       kConvention, options.num_jobs);
 
   std::optional<PredictedMaps> predicted;
-  if (std::find(options.cases.begin(), options.cases.end(), Knowledge::kPrediction) !=
+  if (std::find(options.cases.begin(), options.cases.end(), sdf::Knowledge::kPrediction) !=
       options.cases.end()) {
     predicted.emplace(experiment, maps, kConvention, options.predictor,
                       experiment.epsilon_m + robot.largest_sphere_radius_m(), options.num_jobs);
@@ -85,11 +87,11 @@ OpenLoopStudy RunOpenLoopStudy(const OpenLoopExperiment& experiment, const std::
     OpenLoopRow& row = study.rows[static_cast<std::size_t>(i)];
     const auto& [start, goal] = experiment.pairs[static_cast<std::size_t>(row.pair - 1)];
     const OpenLoopTask task{robot.configurations().at(start), robot.configurations().at(goal)};
-    const std::vector<const DistanceField*> truth = maps.FieldsAt(row.speed_m_s);
-    const BelievedField ask_prediction = [&](int now, int k) -> const DistanceField& {
+    const std::vector<const sdf::DistanceField*> truth = maps.FieldsAt(row.speed_m_s);
+    const BelievedField ask_prediction = [&](int now, int k) -> const sdf::DistanceField& {
       return predicted->At(row.speed_m_s, now, k);
     };
-    for (const Knowledge knowledge : options.cases) {
+    for (const sdf::Knowledge knowledge : options.cases) {
       OpenLoopRow::Case& entry = row.cases[knowledge];
       entry.result =
           RunOpenLoop(experiment, robot, task, MakeBelief(knowledge, truth, ask_prediction), truth,
@@ -104,4 +106,4 @@ OpenLoopStudy RunOpenLoopStudy(const OpenLoopExperiment& experiment, const std::
   return study;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -5,19 +5,19 @@
 #include <string>
 #include <vector>
 
-#include "bench/reproduce/open_loop.h"
-#include "bench/reproduce/open_loop_experiment.h"
-#include "bench/reproduce/true_clearance.h"
-#include "robot/robot_model.h"
-#include "sdf/world_model.h"
+#include "sidestep/bench/reproduce/open_loop.h"
+#include "sidestep/bench/reproduce/open_loop_experiment.h"
+#include "sidestep/bench/reproduce/true_clearance.h"
+#include "sidestep/robot/robot_model.h"
+#include "sidestep/sdf/world_model.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// Which part of an experiment to run, and how. Other speeds, sigmas, margins and numbers of
 /// interpolated costs are set in the experiment itself.
 struct OpenLoopStudyOptions {
-  std::vector<Knowledge> cases = {Knowledge::kStatic, Knowledge::kExecuteAndUpdate,
-                                  Knowledge::kFullKnowledge};
+  std::vector<sdf::Knowledge> cases = {sdf::Knowledge::kStatic, sdf::Knowledge::kExecuteAndUpdate,
+                                       sdf::Knowledge::kFullKnowledge};
   std::vector<int> pairs = {};          ///< counted from 1, as published; empty: all
   std::string predictor = "two_frame";  ///< under `prediction`; a name of sdf/prediction/registry.h
   bool once = false;  ///< static and full_knowledge are solved once only, as the paper says
@@ -35,7 +35,7 @@ struct OpenLoopRow {
   };
   int pair = 0;
   double speed_m_s = 0;
-  std::map<Knowledge, Case> cases;
+  std::map<sdf::Knowledge, Case> cases;
 };
 
 struct OpenLoopStudy {
@@ -51,4 +51,4 @@ OpenLoopStudy RunOpenLoopStudy(const OpenLoopExperiment& experiment, const std::
                                const OpenLoopStudyOptions& options,
                                const std::function<void(int done, int all)>& on_row = {});
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,4 +1,4 @@
-#include "bench/reproduce/parallel.h"
+#include "sidestep/bench/reproduce/parallel.h"
 
 #include <algorithm>
 #include <atomic>
@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace sidestep {
+namespace sidestep::bench {
 
 void RunTasks(int count, int num_jobs, const std::function<void(int)>& task) {
   std::atomic<int> next = 0;
@@ -31,4 +31,4 @@ void RunTasks(int count, int num_jobs, const std::function<void(int)>& task) {
   if (error) std::rethrow_exception(error);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -2,11 +2,11 @@
 
 #include <functional>
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// Calls task(0) ... task(count - 1), each once, in `num_jobs` >= 1 threads; returns when all are
 /// done. Tasks must not depend on each other's order, and so the result does not depend on
 /// `num_jobs`. The first exception of a task is thrown here; tasks not begun by then are left out.
 void RunTasks(int count, int num_jobs, const std::function<void(int)>& task);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,31 +1,31 @@
-#include "bench/reproduce/predicted_maps.h"
+#include "sidestep/bench/reproduce/predicted_maps.h"
 
 #include <utility>
 
-#include "bench/reproduce/parallel.h"
-#include "core/observations.h"
-#include "sdf/world_model.h"
+#include "sidestep/bench/reproduce/parallel.h"
+#include "sidestep/core/observations.h"
+#include "sidestep/sdf/world_model.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 // A field as it is at one moment.
-class FrozenField final : public DistanceField {
+class FrozenField final : public sdf::DistanceField {
  public:
-  FrozenField(std::shared_ptr<const DistanceField> field, EpisodeTime t)
+  FrozenField(std::shared_ptr<const sdf::DistanceField> field, EpisodeTime t)
       : field_(std::move(field)), t_(t) {}
 
-  DistanceSample Sample(const Eigen::Vector3d& p_WQ, EpisodeTime) const override {
+  sdf::DistanceSample Sample(const Eigen::Vector3d& p_WQ, EpisodeTime) const override {
     return field_->Sample(p_WQ, t_);
   }
   void SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime,
-                  DistanceSamples& samples) const override {
+                  sdf::DistanceSamples& samples) const override {
     field_->SampleMany(p_WQ, t_, samples);
   }
   double max_distance_m() const override { return field_->max_distance_m(); }
 
  private:
-  std::shared_ptr<const DistanceField> field_;
+  std::shared_ptr<const sdf::DistanceField> field_;
   EpisodeTime t_;
 };
 
@@ -48,27 +48,27 @@ Scan ToScan(const OccupancyGrid& occupancy, EpisodeTime t) {
 }  // namespace
 
 PredictedMaps::PredictedMaps(const OpenLoopExperiment& experiment, const PublishedMaps& maps,
-                             DistanceConvention convention, const std::string& predictor,
+                             sdf::DistanceConvention convention, const std::string& predictor,
                              double max_distance_m, int num_jobs)
     : num_states_(experiment.num_states) {
-  WorldModelOptions options;
-  options.knowledge = Knowledge::kPrediction;
+  sdf::WorldModelOptions options;
+  options.knowledge = sdf::Knowledge::kPrediction;
   options.predictor = predictor;
   options.grid = experiment.grid;
   options.max_distance_m = max_distance_m;
   options.convention = convention;
-  MakeWorldModel(options);  // complains here and not in a thread
+  sdf::MakeWorldModel(options);  // complains here and not in a thread
 
   for (const double speed_m_s : experiment.speeds_m_s) fields_.try_emplace(speed_m_s);
   std::vector<decltype(fields_)::iterator> entries;
   for (auto entry = fields_.begin(); entry != fields_.end(); ++entry) entries.push_back(entry);
   RunTasks(static_cast<int>(entries.size()), num_jobs, [&](int i) {
     auto& [speed_m_s, fields] = *entries[static_cast<std::size_t>(i)];
-    const std::unique_ptr<WorldModel> world = MakeWorldModel(options);
+    const std::unique_ptr<sdf::WorldModel> world = sdf::MakeWorldModel(options);
     for (int now = 0; now < num_states_; ++now) {
       world->Observe(
           ToScan(maps.OccupancyAt(speed_m_s, now), EpisodeTime(now * experiment.step_s)));
-      const std::shared_ptr<const DistanceField> belief = world->MakeField();
+      const std::shared_ptr<const sdf::DistanceField> belief = world->MakeField();
       for (int k = 0; k < num_states_; ++k) {
         fields.push_back(std::make_unique<FrozenField>(belief, EpisodeTime(k * experiment.step_s)));
       }
@@ -76,8 +76,8 @@ PredictedMaps::PredictedMaps(const OpenLoopExperiment& experiment, const Publish
   });
 }
 
-const DistanceField& PredictedMaps::At(double speed_m_s, int now, int k) const {
+const sdf::DistanceField& PredictedMaps::At(double speed_m_s, int now, int k) const {
   return *fields_.at(speed_m_s).at(static_cast<std::size_t>(now * num_states_ + k));
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

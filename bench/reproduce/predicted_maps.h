@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "bench/reproduce/open_loop_experiment.h"
-#include "bench/reproduce/published_maps.h"
-#include "sdf/distance_field.h"
+#include "sidestep/bench/reproduce/open_loop_experiment.h"
+#include "sidestep/bench/reproduce/published_maps.h"
+#include "sidestep/sdf/distance_field.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// What a planner believes under `prediction` in the open-loop protocol. At solve `now` it has seen
 /// the occupancy of steps 0 ... now, once each and nothing else; the product's own segmentation,
@@ -24,16 +24,16 @@ class PredictedMaps {
   /// @param max_distance_m where fields are clamped: no cost may reach further.
   /// @throws std::invalid_argument for an unknown predictor.
   PredictedMaps(const OpenLoopExperiment& experiment, const PublishedMaps& maps,
-                DistanceConvention convention, const std::string& predictor, double max_distance_m,
-                int num_jobs);
+                sdf::DistanceConvention convention, const std::string& predictor,
+                double max_distance_m, int num_jobs);
 
   /// The belief at solve `now` for step k, at one of the experiment's speeds.
-  const DistanceField& At(double speed_m_s, int now, int k) const;
+  const sdf::DistanceField& At(double speed_m_s, int now, int k) const;
 
  private:
   int num_states_;
   // By speed; within it, `now` runs slower than k.
-  std::map<double, std::vector<std::unique_ptr<const DistanceField>>> fields_;
+  std::map<double, std::vector<std::unique_ptr<const sdf::DistanceField>>> fields_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

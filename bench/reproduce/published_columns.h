@@ -1,8 +1,8 @@
 #pragma once
 
-#include "sdf/world_model.h"
+#include "sidestep/sdf/world_model.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// How the published files name their columns: the pair, the speed, and then PREFIX + CASE.
 inline constexpr const char* kPairColumn = "pair";
@@ -14,15 +14,15 @@ inline constexpr const char* kGpCostPrefix = "gp_cost_";
 inline constexpr const char* kObstacleCostPrefix = "obstacle_cost_";
 
 struct PublishedCase {
-  Knowledge knowledge;
+  sdf::Knowledge knowledge;
   const char* name;
   bool is_published;  ///< false: the case is ours
 };
 /// In the order of the published files, then ours.
 inline constexpr PublishedCase kPublishedCases[] = {
-    {Knowledge::kStatic, "static", true},
-    {Knowledge::kExecuteAndUpdate, "execute_update", true},
-    {Knowledge::kFullKnowledge, "full_knowledge", true},
-    {Knowledge::kPrediction, "prediction", false}};
+    {sdf::Knowledge::kStatic, "static", true},
+    {sdf::Knowledge::kExecuteAndUpdate, "execute_update", true},
+    {sdf::Knowledge::kFullKnowledge, "full_knowledge", true},
+    {sdf::Knowledge::kPrediction, "prediction", false}};
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,13 +1,13 @@
-#include "bench/reproduce/published_maps.h"
+#include "sidestep/bench/reproduce/published_maps.h"
 
-#include "bench/reproduce/parallel.h"
-#include "sdf/grid_field.h"
-#include "sdf/map/fast_distance_transform.h"
+#include "sidestep/bench/reproduce/parallel.h"
+#include "sidestep/sdf/grid_field.h"
+#include "sidestep/sdf/map/fast_distance_transform.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 PublishedMaps::PublishedMaps(const OpenLoopExperiment& experiment, BoxAlignment static_boxes,
-                             DistanceConvention convention, int num_jobs)
+                             sdf::DistanceConvention convention, int num_jobs)
     : experiment_(experiment), static_occupancy_(experiment.grid) {
   for (const PublishedBox& box : experiment.static_boxes) {
     Fill(static_occupancy_,
@@ -24,10 +24,10 @@ PublishedMaps::PublishedMaps(const OpenLoopExperiment& experiment, BoxAlignment 
     OccupancyGrid occupancy = static_occupancy_;
     Fill(occupancy, cells);
     // No clamp that would bite: the published fields have none.
-    field =
-        std::make_unique<GridField>(std::make_shared<const SdfGrid>(FastDistanceTransform().Compute(
-                                        occupancy, {.convention = convention})),
-                                    kNoSurfaceDistance_m);
+    field = std::make_unique<sdf::GridField>(
+        std::make_shared<const sdf::SdfGrid>(
+            sdf::FastDistanceTransform().Compute(occupancy, {.convention = convention})),
+        sdf::kNoSurfaceDistance_m);
   });
 }
 
@@ -42,12 +42,12 @@ OccupancyGrid PublishedMaps::OccupancyAt(double speed_m_s, int step) const {
   return occupancy;
 }
 
-std::vector<const DistanceField*> PublishedMaps::FieldsAt(double speed_m_s) const {
-  std::vector<const DistanceField*> fields;
+std::vector<const sdf::DistanceField*> PublishedMaps::FieldsAt(double speed_m_s) const {
+  std::vector<const sdf::DistanceField*> fields;
   for (int k = 0; k < experiment_.num_states; ++k) {
     fields.push_back(fields_.at(MovingCells(speed_m_s, k)).get());
   }
   return fields;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -4,12 +4,12 @@
 #include <memory>
 #include <vector>
 
-#include "bench/reproduce/open_loop_experiment.h"
-#include "bench/reproduce/published_rasteriser.h"
-#include "sdf/distance_field.h"
-#include "sdf/map/distance_transform.h"
+#include "sidestep/bench/reproduce/open_loop_experiment.h"
+#include "sidestep/bench/reproduce/published_rasteriser.h"
+#include "sidestep/sdf/distance_field.h"
+#include "sidestep/sdf/map/distance_transform.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// The worlds of an experiment, frozen at each of its steps: occupancy by the published rasteriser
 /// and its distance field. Steps and speeds that fill the same cells share one field. Immutable;
@@ -19,14 +19,14 @@ class PublishedMaps {
   /// Makes all the fields that `experiment` needs at its speeds, `num_jobs` at a time.
   /// @param static_boxes how the static boxes are aligned; the moving box is as intended.
   PublishedMaps(const OpenLoopExperiment& experiment, BoxAlignment static_boxes,
-                DistanceConvention convention, int num_jobs);
+                sdf::DistanceConvention convention, int num_jobs);
 
   const OccupancyGrid& static_occupancy() const { return static_occupancy_; }
   /// The world at `step`. Any speed.
   OccupancyGrid OccupancyAt(double speed_m_s, int step) const;
 
   /// The fields of steps 0, 1, ... at one of the experiment's speeds. They live as long as this.
-  std::vector<const DistanceField*> FieldsAt(double speed_m_s) const;
+  std::vector<const sdf::DistanceField*> FieldsAt(double speed_m_s) const;
 
   int num_fields() const { return static_cast<int>(fields_.size()); }
 
@@ -35,7 +35,8 @@ class PublishedMaps {
 
   OpenLoopExperiment experiment_;
   OccupancyGrid static_occupancy_;
-  std::map<CellRange, std::unique_ptr<const DistanceField>> fields_;  // by the moving box's cells
+  std::map<CellRange, std::unique_ptr<const sdf::DistanceField>>
+      fields_;  // by the moving box's cells
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

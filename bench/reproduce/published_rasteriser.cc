@@ -1,9 +1,9 @@
-#include "bench/reproduce/published_rasteriser.h"
+#include "sidestep/bench/reproduce/published_rasteriser.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace sidestep {
+namespace sidestep::bench {
 
 CellRange PublishedBoxCells(const GridSpec& grid, const Eigen::Vector3d& center_m,
                             const Eigen::Vector3d& size_m, BoxAlignment alignment) {
@@ -30,4 +30,4 @@ void Fill(OccupancyGrid& occupancy, const CellRange& cells) {
   }
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

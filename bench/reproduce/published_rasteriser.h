@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "core/grid.h"
+#include "sidestep/core/grid.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// Rasteriser convention `published`: which cells the authors' code fills for an axis-aligned box.
 ///
@@ -39,4 +39,4 @@ CellRange PublishedBoxCells(const GridSpec& grid, const Eigen::Vector3d& center_
 /// @param cells must lie within the grid, or be empty.
 void Fill(OccupancyGrid& occupancy, const CellRange& cells);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,4 +1,4 @@
-#include "bench/reproduce/published_table.h"
+#include "sidestep/bench/reproduce/published_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,10 @@
 #include <map>
 #include <utility>
 
-#include "bench/reproduce/published_columns.h"
-#include "core/input_error.h"
+#include "sidestep/bench/reproduce/published_columns.h"
+#include "sidestep/core/input_error.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 struct Measure {
@@ -36,7 +36,7 @@ constexpr Measure kOwnMeasures[] = {
 
 struct Column {
   std::string name;
-  Knowledge knowledge;
+  sdf::Knowledge knowledge;
   double (*get)(const OpenLoopRow::Case& entry);
 };
 
@@ -206,4 +206,4 @@ std::string Describe(const TableComparison& comparison) {
   return text;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

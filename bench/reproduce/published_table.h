@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "bench/reproduce/csv_table.h"
-#include "bench/reproduce/open_loop_study.h"
+#include "sidestep/bench/reproduce/csv_table.h"
+#include "sidestep/bench/reproduce/open_loop_study.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// The rows as a table: first the columns of the published files, under their names and in their
 /// order, for the kinds of knowledge that were run; then ours. What is not finite is left empty.
@@ -58,4 +58,4 @@ TableComparison CompareTables(const CsvTable& ours, const CsvTable& published,
 /// The comparison in words, for a person to read.
 std::string Describe(const TableComparison& comparison);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,14 +1,14 @@
-#include "bench/reproduce/sdf_timing.h"
+#include "sidestep/bench/reproduce/sdf_timing.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <utility>
 
-#include "bench/report/html_page.h"
-#include "bench/reproduce/published_columns.h"
-#include "bench/statistics.h"
+#include "sidestep/bench/report/html_page.h"
+#include "sidestep/bench/reproduce/published_columns.h"
+#include "sidestep/bench/statistics.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 constexpr double kMargin_m = 0.2;
@@ -268,4 +268,4 @@ std::string MakeSdfTimingPage(const SdfTimingOptions& options, const CsvTable& o
   return page.ToText();
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "bench/report/figure.h"
-#include "bench/reproduce/csv_table.h"
-#include "bench/reproduce/field_timer.h"
+#include "sidestep/bench/report/figure.h"
+#include "sidestep/bench/reproduce/csv_table.h"
+#include "sidestep/bench/reproduce/field_timer.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// Table 1 of Finean, Merkt & Havoutis (ICAPS 2021): what a predicted field costs over the size of
 /// the grid, computed anew or composed.
@@ -51,4 +51,4 @@ std::string MakeSdfTimingPage(const SdfTimingOptions& options, const CsvTable& o
                               const std::optional<CsvTable>& published,
                               const std::string& svg_path);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

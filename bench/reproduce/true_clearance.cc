@@ -1,13 +1,13 @@
-#include "bench/reproduce/true_clearance.h"
+#include "sidestep/bench/reproduce/true_clearance.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "core/shape.h"
-#include "core/time.h"
-#include "planner/guarded_spheres.h"
+#include "sidestep/core/shape.h"
+#include "sidestep/core/time.h"
+#include "sidestep/planner/guarded_spheres.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 constexpr int kSamplesAStep = 20;
@@ -18,15 +18,16 @@ double DistanceTo(const PublishedBox& box, const Eigen::Vector3d& p_WS) {
 
 }  // namespace
 
-TrueClearance MeasureTrueClearance(const OpenLoopExperiment& experiment, const RobotModel& robot,
-                                   const Trajectory& trajectory, double speed_m_s) {
+TrueClearance MeasureTrueClearance(const OpenLoopExperiment& experiment,
+                                   const robot::RobotModel& robot, const Trajectory& trajectory,
+                                   double speed_m_s) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
   TrueClearance least{kFar, kFar, kFar};
-  const std::vector<int> guarded = GuardedSpheres(robot);
+  const std::vector<int> guarded = planner::GuardedSpheres(robot);
   const int num_samples = (trajectory.num_states() - 1) * kSamplesAStep + 1;
   for (int i = 0; i < num_samples; ++i) {
     const double t_s = i * experiment.step_s / kSamplesAStep;
-    const SphereCenters centers =
+    const robot::SphereCenters centers =
         robot.ComputeSphereCenters(Sample(trajectory, HorizonOffset(t_s)).q, false);
     const PublishedBox moving = experiment.MovingBoxAtTime(speed_m_s, t_s);
     for (const int s : guarded) {
@@ -45,4 +46,4 @@ TrueClearance MeasureTrueClearance(const OpenLoopExperiment& experiment, const R
   return least;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

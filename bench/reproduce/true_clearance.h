@@ -1,10 +1,10 @@
 #pragma once
 
-#include "bench/reproduce/open_loop_experiment.h"
-#include "core/trajectory.h"
-#include "robot/robot_model.h"
+#include "sidestep/bench/reproduce/open_loop_experiment.h"
+#include "sidestep/core/trajectory.h"
+#include "sidestep/robot/robot_model.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// How close a motion comes to the experiment's boxes as they are: exact, where they were meant to
 /// stand, moving on between the steps. Least distance minus radius over the robot's spheres, mount
@@ -19,7 +19,8 @@ struct TrueClearance {
 
 /// Sampled every 5 ms. The published verdict differs in three ways: it knows voxels (static ones a
 /// cell low), it looks at support states alone, and outside its grid everything is free.
-TrueClearance MeasureTrueClearance(const OpenLoopExperiment& experiment, const RobotModel& robot,
-                                   const Trajectory& trajectory, double speed_m_s);
+TrueClearance MeasureTrueClearance(const OpenLoopExperiment& experiment,
+                                   const robot::RobotModel& robot, const Trajectory& trajectory,
+                                   double speed_m_s);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,10 +1,10 @@
-#include "bench/statistics/proportions.h"
+#include "sidestep/bench/statistics/proportions.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-namespace sidestep {
+namespace sidestep::bench {
 
 Interval WilsonInterval(int successes, int trials, double z) {
   if (trials < 1 || successes < 0 || successes > trials) {
@@ -29,4 +29,4 @@ double McNemarExactP(int only_first, int only_second) {
   return std::min(1.0, 2 * tail);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// An interval estimate.
 struct Interval {
@@ -22,4 +22,4 @@ Interval WilsonInterval(int successes, int trials, double z = 1.959963984540054)
 /// @throws std::invalid_argument for negative numbers.
 double McNemarExactP(int only_first, int only_second);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

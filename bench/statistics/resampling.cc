@@ -1,4 +1,4 @@
-#include "bench/statistics/resampling.h"
+#include "sidestep/bench/statistics/resampling.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <random>
 #include <stdexcept>
 
-#include "bench/statistics.h"
+#include "sidestep/bench/statistics.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 Interval BootstrapOverClusters(int num_clusters,
                                const std::function<double(const std::vector<int>&)>& statistic,
@@ -46,4 +46,4 @@ std::vector<double> HolmAdjusted(const std::vector<double>& p_values) {
   return adjusted;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -4,9 +4,9 @@
 #include <functional>
 #include <vector>
 
-#include "bench/statistics/proportions.h"
+#include "sidestep/bench/statistics/proportions.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// Percentile bootstrap over clusters: rows that belong together (all speeds of a start and goal)
 /// are drawn together, because they are not independent. Deterministic for a seed.
@@ -25,4 +25,4 @@ Interval BootstrapOverClusters(int num_clusters,
 /// @throws std::invalid_argument for a p-value outside [0, 1].
 std::vector<double> HolmAdjusted(const std::vector<double>& p_values);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

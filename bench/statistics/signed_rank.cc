@@ -1,12 +1,12 @@
-#include "bench/statistics/signed_rank.h"
+#include "sidestep/bench/statistics/signed_rank.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "bench/statistics.h"
+#include "sidestep/bench/statistics.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 double HodgesLehmann(const std::vector<double>& differences) {
@@ -77,4 +77,4 @@ SignedRankResult TestSignedRanks(const std::vector<double>& differences) {
   return result;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// What the paired differences of two treatments say.
 struct SignedRankResult {
@@ -21,4 +21,4 @@ struct SignedRankResult {
 /// @throws std::invalid_argument for a difference that is not finite.
 SignedRankResult TestSignedRanks(const std::vector<double>& differences);
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

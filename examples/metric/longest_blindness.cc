@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/recording.h"
+#include "sidestep/record/recording.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
-double LongestBlindness(const Recording& recording) {
+double LongestBlindness(const record::Recording& recording) {
   const auto& scans = recording.observations;
   if (scans.size() < 2) return std::numeric_limits<double>::quiet_NaN();
   double longest_s = 0;
@@ -17,4 +17,4 @@ double LongestBlindness(const Recording& recording) {
   return longest_s;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

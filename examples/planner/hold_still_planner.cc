@@ -2,15 +2,15 @@
 // it to planner/planners.def, and `sidestep run hsr_walkway --set planner.name=hold_still` runs it.
 #include <memory>
 
-#include "planner/planner.h"
-#include "planner/planner_settings.h"
+#include "sidestep/planner/planner.h"
+#include "sidestep/planner/planner_settings.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 namespace {
 
 class HoldStillPlanner final : public Planner {
  public:
-  explicit HoldStillPlanner(const RobotModel& robot) : Planner(robot) {}
+  explicit HoldStillPlanner(const robot::RobotModel& robot) : Planner(robot) {}
 
  private:
   PlanResult DoPlan(const PlanRequest& request) const override {
@@ -30,8 +30,9 @@ class HoldStillPlanner final : public Planner {
 
 }  // namespace
 
-std::unique_ptr<Planner> MakeHoldStillPlanner(const RobotModel& robot, const PlannerSettings&) {
+std::unique_ptr<Planner> MakeHoldStillPlanner(const robot::RobotModel& robot,
+                                              const PlannerSettings&) {
   return std::make_unique<HoldStillPlanner>(robot);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

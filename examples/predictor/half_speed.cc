@@ -1,8 +1,8 @@
 // A predictor that expects everything to slow down to half its speed. Copy this file to
 // sdf/prediction/ and add the line of predictors.def beside it to sdf/prediction/predictors.def.
-#include "sdf/prediction/predictor.h"
+#include "sidestep/sdf/prediction/predictor.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 class HalfSpeedPredictor final : public ObstaclePredictor {
@@ -29,4 +29,4 @@ std::unique_ptr<ObstaclePredictor> MakeHalfSpeedPredictor() {
   return std::make_unique<HalfSpeedPredictor>();
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -2,14 +2,14 @@
 // line of sensors.def beside it to sim/sensors.def.
 #include <cmath>
 
-#include "sim/occupancy_sensor.h"
+#include "sidestep/sim/occupancy_sensor.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 namespace {
 
-class BlinkingSensor final : public Sensor {
+class BlinkingSensor final : public robot::Sensor {
  public:
-  explicit BlinkingSensor(std::unique_ptr<Sensor> sensor) : sensor_(std::move(sensor)) {}
+  explicit BlinkingSensor(std::unique_ptr<robot::Sensor> sensor) : sensor_(std::move(sensor)) {}
 
   EpisodeTime NextDue() const override { return sensor_->NextDue(); }
 
@@ -20,14 +20,15 @@ class BlinkingSensor final : public Sensor {
   }
 
  private:
-  std::unique_ptr<Sensor> sensor_;
+  std::unique_ptr<robot::Sensor> sensor_;
 };
 
 }  // namespace
 
-std::unique_ptr<Sensor> MakeBlinkingSensor(const Scenario& scenario, const World& world) {
+std::unique_ptr<robot::Sensor> MakeBlinkingSensor(const scenarios::Scenario& scenario,
+                                                  const World& world) {
   return std::make_unique<BlinkingSensor>(
       std::make_unique<OccupancySensor>(world, scenario.grid, scenario.sensor.rate_hz));
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

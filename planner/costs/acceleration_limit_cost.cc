@@ -1,11 +1,11 @@
-#include "planner/costs/acceleration_limit_cost.h"
+#include "sidestep/planner/costs/acceleration_limit_cost.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "planner/costs/state_jacobian.h"
+#include "sidestep/planner/costs/state_jacobian.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
 AccelerationLimitCost::AccelerationLimitCost(double dt_s, const Eigen::VectorXd& a_max,
                                              const Eigen::VectorXd& weight)
@@ -50,4 +50,4 @@ bool AccelerationLimitCost::Evaluate(double const* const* parameters, double* re
   return true;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

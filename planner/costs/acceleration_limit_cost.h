@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// Keeps the acceleration within one interval bounded. The motion there is a cubic, its
 /// acceleration linear in time and greatest at an end; with dt the interval's length
@@ -26,4 +26,4 @@ class AccelerationLimitCost final : public ceres::CostFunction {
   Eigen::VectorXd a_max_, weight_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

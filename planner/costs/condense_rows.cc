@@ -1,8 +1,8 @@
-#include "planner/costs/condense_rows.h"
+#include "sidestep/planner/costs/condense_rows.h"
 
 #include <Eigen/QR>
 
-namespace sidestep {
+namespace sidestep::planner {
 
 Eigen::Index CondenseRows(Eigen::MatrixXd& rows, Eigen::Index num_rows) {
   if (num_rows <= rows.cols()) return num_rows;
@@ -12,4 +12,4 @@ Eigen::Index CondenseRows(Eigen::MatrixXd& rows, Eigen::Index num_rows) {
   return rows.cols();
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

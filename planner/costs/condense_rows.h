@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// Residuals and their Jacobian in fewer rows. The first `num_rows` rows of `rows` are (J, r), with
 /// r in the last of its m columns. They give way to as many as are returned, at most m, whose
@@ -10,4 +10,4 @@ namespace sidestep {
 /// use of. Source: Golub & Van Loan, Matrix Computations, 4th ed., section 5.2 (Householder QR).
 Eigen::Index CondenseRows(Eigen::MatrixXd& rows, Eigen::Index num_rows);
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -1,9 +1,9 @@
-#include "planner/costs/gp_prior_cost.h"
+#include "sidestep/planner/costs/gp_prior_cost.h"
 
-#include "planner/costs/state_jacobian.h"
-#include "planner/gp_trajectory.h"
+#include "sidestep/planner/costs/state_jacobian.h"
+#include "sidestep/planner/gp_trajectory.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
 GpPriorCost::GpPriorCost(int num_joints, double dt_s, double qc)
     : num_joints_(num_joints),
@@ -26,4 +26,4 @@ bool GpPriorCost::Evaluate(double const* const* parameters, double* residuals,
   return true;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

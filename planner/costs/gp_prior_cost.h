@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// The Gaussian-process prior of one interval: r = W (Phi x0 - x1), shape 2n (first the n rows of
 /// position, then those of velocity), whose half square is the GP cost of that interval.
@@ -23,4 +23,4 @@ class GpPriorCost final : public ceres::CostFunction {
   Eigen::Matrix2d W_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

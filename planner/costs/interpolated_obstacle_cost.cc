@@ -1,8 +1,8 @@
-#include "planner/costs/interpolated_obstacle_cost.h"
+#include "sidestep/planner/costs/interpolated_obstacle_cost.h"
 
 #include <Eigen/Core>
 
-namespace sidestep {
+namespace sidestep::planner {
 namespace {
 
 // d h / d (q, v) of one end, whose share in q(tau) is weight(0) q + weight(1) v.
@@ -40,4 +40,4 @@ bool InterpolatedObstacleCost::Evaluate(double const* const* parameters, double*
   return true;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -2,11 +2,11 @@
 
 #include <ceres/cost_function.h>
 
-#include "core/time.h"
-#include "planner/costs/obstacle_hinge.h"
-#include "planner/gp_trajectory.h"
+#include "sidestep/core/time.h"
+#include "sidestep/planner/costs/obstacle_hinge.h"
+#include "sidestep/planner/gp_trajectory.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// Keeps the robot's spheres away from obstacles between two support states: the hinges of
 /// obstacle_hinge.h at the configuration that the GP interpolates,
@@ -30,4 +30,4 @@ class InterpolatedObstacleCost final : public ceres::CostFunction {
   EpisodeTime t_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

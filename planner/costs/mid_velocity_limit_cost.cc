@@ -1,10 +1,10 @@
-#include "planner/costs/mid_velocity_limit_cost.h"
+#include "sidestep/planner/costs/mid_velocity_limit_cost.h"
 
 #include <cmath>
 
-#include "planner/costs/state_jacobian.h"
+#include "sidestep/planner/costs/state_jacobian.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
 MidVelocityLimitCost::MidVelocityLimitCost(double dt_s, const Eigen::VectorXd& v_max,
                                            const Eigen::VectorXd& weight)
@@ -37,4 +37,4 @@ bool MidVelocityLimitCost::Evaluate(double const* const* parameters, double* res
   return true;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

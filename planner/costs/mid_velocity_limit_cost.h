@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// Keeps the velocity in the middle of an interval bounded. With bounds at the support states alone
 /// the cubic between two of them bulges beyond. With dt the interval's length
@@ -25,4 +25,4 @@ class MidVelocityLimitCost final : public ceres::CostFunction {
   Eigen::VectorXd v_max_, weight_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -1,6 +1,6 @@
-#include "planner/costs/obstacle_cost.h"
+#include "sidestep/planner/costs/obstacle_cost.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
 ObstacleCost::ObstacleCost(ObstacleHinge& hinge, EpisodeTime t) : hinge_(hinge), t_(t) {
   set_num_residuals(hinge.num_residuals());
@@ -21,4 +21,4 @@ bool ObstacleCost::Evaluate(double const* const* parameters, double* residuals,
   return true;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -4,10 +4,10 @@
 
 #include <Eigen/Core>
 
-#include "core/time.h"
-#include "planner/costs/obstacle_hinge.h"
+#include "sidestep/core/time.h"
+#include "sidestep/planner/costs/obstacle_hinge.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// Keeps the robot's spheres away from obstacles at one support state: the hinges of
 /// obstacle_hinge.h at q and the state's time.
@@ -25,4 +25,4 @@ class ObstacleCost final : public ceres::CostFunction {
   EpisodeTime t_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

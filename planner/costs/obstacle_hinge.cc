@@ -1,14 +1,15 @@
-#include "planner/costs/obstacle_hinge.h"
+#include "sidestep/planner/costs/obstacle_hinge.h"
 
 #include <algorithm>
 
-#include "planner/costs/condense_rows.h"
-#include "planner/guarded_spheres.h"
+#include "sidestep/planner/costs/condense_rows.h"
+#include "sidestep/planner/guarded_spheres.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
-ObstacleHinge::ObstacleHinge(const RobotModel& robot, const DistanceField& field, double epsilon_m,
-                             double sigma, std::optional<double> self_epsilon_m, bool condensed)
+ObstacleHinge::ObstacleHinge(const robot::RobotModel& robot, const sdf::DistanceField& field,
+                             double epsilon_m, double sigma, std::optional<double> self_epsilon_m,
+                             bool condensed)
     : robot_(robot),
       field_(field),
       sigma_(sigma),
@@ -32,7 +33,7 @@ ObstacleHinge::ObstacleHinge(const RobotModel& robot, const DistanceField& field
 
 void ObstacleHinge::Evaluate(const Eigen::VectorXd& q, EpisodeTime t, bool with_jacobian) {
   const Eigen::Index S = p_WS_.cols();
-  const SphereCenters centers = robot_.ComputeSphereCenters(q, with_jacobian);
+  const robot::SphereCenters centers = robot_.ComputeSphereCenters(q, with_jacobian);
   for (Eigen::Index s = 0; s < S; ++s) p_WS_.col(s) = centers.p_WS.col(spheres_[s]);
   field_.SampleMany(p_WS_, t, samples_);
   hinges_.head(S) = (reach_m_ - samples_.distance_m).cwiseMax(0) / sigma_;
@@ -66,7 +67,7 @@ void ObstacleHinge::Condense(bool with_jacobian) {
   condensed_r_.head(num_rows) = active_.col(n).head(num_rows);
 }
 
-void ObstacleHinge::EvaluateLinks(const SphereCenters& centers, bool with_jacobian) {
+void ObstacleHinge::EvaluateLinks(const robot::SphereCenters& centers, bool with_jacobian) {
   for (int pair = 0; pair < links_.num_pairs(); ++pair) {
     const Eigen::Index h = p_WS_.cols() + pair;
     const LinkGap gap = links_.Find(pair, centers.p_WS);
@@ -83,4 +84,4 @@ void ObstacleHinge::EvaluateLinks(const SphereCenters& centers, bool with_jacobi
   }
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

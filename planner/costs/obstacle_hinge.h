@@ -4,13 +4,13 @@
 #include <optional>
 #include <vector>
 
-#include "core/time.h"
-#include "planner/costs/state_jacobian.h"
-#include "planner/self_clearance.h"
-#include "robot/robot_model.h"
-#include "sdf/distance_field.h"
+#include "sidestep/core/time.h"
+#include "sidestep/planner/costs/state_jacobian.h"
+#include "sidestep/planner/self_clearance.h"
+#include "sidestep/robot/robot_model.h"
+#include "sidestep/sdf/distance_field.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// The mathematics of the obstacle costs. With phi the field, sphere s of radius r_s at p_WS(q):
 ///   h_s = max(0, epsilon + r_s - phi(p_WS(q), t)) / sigma,
@@ -28,8 +28,9 @@ namespace sidestep {
 class ObstacleHinge {
  public:
   /// `robot` and `field` are borrowed. Without `self_epsilon_m` links do not see each other.
-  ObstacleHinge(const RobotModel& robot, const DistanceField& field, double epsilon_m, double sigma,
-                std::optional<double> self_epsilon_m = std::nullopt, bool condensed = false);
+  ObstacleHinge(const robot::RobotModel& robot, const sdf::DistanceField& field, double epsilon_m,
+                double sigma, std::optional<double> self_epsilon_m = std::nullopt,
+                bool condensed = false);
 
   int num_joints() const { return robot_.num_joints(); }
   /// H: of each sphere but mount spheres, then of each pair of links.
@@ -49,17 +50,17 @@ class ObstacleHinge {
 
  private:
   void Condense(bool with_jacobian);
-  void EvaluateLinks(const SphereCenters& centers, bool with_jacobian);
+  void EvaluateLinks(const robot::SphereCenters& centers, bool with_jacobian);
 
-  const RobotModel& robot_;
-  const DistanceField& field_;
+  const robot::RobotModel& robot_;
+  const sdf::DistanceField& field_;
   double sigma_;
   std::vector<int> spheres_;  // indices in the robot, of those with a hinge
   Eigen::VectorXd reach_m_;   // epsilon + r_s
   SelfClearance links_;
   std::optional<double> self_epsilon_m_;
   Eigen::Matrix3Xd p_WS_;
-  DistanceSamples samples_;
+  sdf::DistanceSamples samples_;
   Eigen::VectorXd hinges_;
   RowMajorMatrix jacobian_;
   bool condensed_;
@@ -68,4 +69,4 @@ class ObstacleHinge {
   Eigen::MatrixXd active_;  // rows (J, h) of the hinges that are not idle
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// Jacobians as Ceres wants them: row-major.
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -19,4 +19,4 @@ inline void SetKroneckerJacobian(const Eigen::Matrix2d& A, int n, double* jacobi
   }
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

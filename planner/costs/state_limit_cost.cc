@@ -1,10 +1,10 @@
-#include "planner/costs/state_limit_cost.h"
+#include "sidestep/planner/costs/state_limit_cost.h"
 
 #include <algorithm>
 
-#include "planner/costs/state_jacobian.h"
+#include "sidestep/planner/costs/state_jacobian.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
 StateLimitCost::StateLimitCost(const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
                                const Eigen::VectorXd& weight)
@@ -32,4 +32,4 @@ bool StateLimitCost::Evaluate(double const* const* parameters, double* residuals
   return true;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// Keeps a support state within bounds on position and velocity: per component
 ///   r = weight max(0, x - upper, lower - x),
@@ -22,4 +22,4 @@ class StateLimitCost final : public ceres::CostFunction {
   Eigen::VectorXd lower_, upper_, weight_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

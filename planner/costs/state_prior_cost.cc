@@ -1,8 +1,8 @@
-#include "planner/costs/state_prior_cost.h"
+#include "sidestep/planner/costs/state_prior_cost.h"
 
-#include "planner/costs/state_jacobian.h"
+#include "sidestep/planner/costs/state_jacobian.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 
 StatePriorCost::StatePriorCost(const Eigen::VectorXd& q_desired, const Eigen::VectorXd& v_desired,
                                double sigma)
@@ -26,4 +26,4 @@ bool StatePriorCost::Evaluate(double const* const* parameters, double* residuals
   return true;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

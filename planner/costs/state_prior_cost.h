@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace sidestep {
+namespace sidestep::planner {
 
 /// Draws one support state to a given one: r = (x - x_desired) / sigma, shape 2n.
 /// Parameters: one block, the state x = (q, v), shape 2n.
@@ -20,4 +20,4 @@ class StatePriorCost final : public ceres::CostFunction {
   double sigma_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -5,11 +5,11 @@
 #include <array>
 #include <cstddef>
 
-#include "core/grid.h"
-#include "core/observations.h"
-#include "core/shape.h"
+#include "sidestep/core/grid.h"
+#include "sidestep/core/observations.h"
+#include "sidestep/core/shape.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// Calls visit(index, distance_m) for each cell whose centre may be within `reach_m` >= 0 of a
 /// thing where it is seen, and some more, with the centre's signed distance to it.
@@ -36,4 +36,4 @@ void VisitCellsNear(const GridSpec& grid_W, const ObjectObservation& thing, doub
   }
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -1,4 +1,4 @@
-#include "sdf/map/distance_transform.h"
+#include "sidestep/sdf/map/distance_transform.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 // All lengths here are in half cells, so that cell centres lie at even numbers and faces at odd
@@ -191,4 +191,4 @@ SdfGrid ComputeSignedDistance(const OccupancyGrid& occupancy, DistanceConvention
   return SdfGrid(occupancy.spec, std::move(distance_m));
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -4,10 +4,10 @@
 #include <limits>
 #include <vector>
 
-#include "core/grid.h"
-#include "sdf/map/sdf_grid.h"
+#include "sidestep/core/grid.h"
+#include "sidestep/sdf/map/sdf_grid.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// Between what a signed distance is measured.
 enum class DistanceConvention {
@@ -52,4 +52,4 @@ std::vector<std::int32_t> ComputeSquaredDistance(const OccupancyGrid& occupancy,
 SdfGrid ComputeSignedDistance(const OccupancyGrid& occupancy,
                               DistanceConvention convention = DistanceConvention::kSurface);
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

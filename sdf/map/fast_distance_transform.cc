@@ -1,4 +1,4 @@
-#include "sdf/map/fast_distance_transform.h"
+#include "sidestep/sdf/map/fast_distance_transform.h"
 
 #include <sys/mman.h>
 
@@ -12,10 +12,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sdf/map/fast_distance_transform_kernels.h"
-#include "sdf/parallel_for.h"
+#include "sidestep/sdf/map/fast_distance_transform_kernels.h"
+#include "sidestep/sdf/parallel_for.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 using fast_transform::AxisCost;
@@ -252,4 +252,4 @@ SdfGrid FastDistanceTransform::Compute(const OccupancyGrid& occupancy,
   return SdfGrid(occupancy.spec, std::move(distance_m));
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

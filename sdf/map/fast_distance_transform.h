@@ -4,11 +4,11 @@
 #include <memory>
 #include <span>
 
-#include "core/grid.h"
-#include "sdf/map/distance_transform.h"
-#include "sdf/map/sdf_grid.h"
+#include "sidestep/core/grid.h"
+#include "sidestep/sdf/map/distance_transform.h"
+#include "sidestep/sdf/map/sdf_grid.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// Only the first two change what is computed.
 struct DistanceTransformOptions {
@@ -50,4 +50,4 @@ class FastDistanceTransform {
   std::unique_ptr<Workspace> workspace_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace sidestep::fast_transform {
+namespace sidestep::sdf::fast_transform {
 
 /// A source and the stretch of the line where it is the lowest: from `begin` to the next piece.
 struct EnvelopePiece {
@@ -68,4 +68,4 @@ void TransformColumnByEnvelopes(Lane* column, std::size_t rows, std::size_t lane
   }
 }
 
-}  // namespace sidestep::fast_transform
+}  // namespace sidestep::sdf::fast_transform

@@ -1,4 +1,4 @@
-#include "sdf/map/fast_distance_transform_kernels.h"
+#include "sidestep/sdf/map/fast_distance_transform_kernels.h"
 
 #include <algorithm>
 #include <bit>
@@ -8,13 +8,13 @@
 // Highway compiles what follows once for each instruction set, each time in a namespace of its own;
 // the end of the file picks one of them at run time.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "sdf/map/fast_distance_transform_kernels.cc"
+#define HWY_TARGET_INCLUDE "sidestep/sdf/map/fast_distance_transform_kernels.cc"
 #include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace sidestep::fast_transform {
+namespace sidestep::sdf::fast_transform {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -528,11 +528,11 @@ bool Plane32(const Job<std::uint32_t>& job, const Scratch<std::uint32_t>& scratc
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace sidestep::fast_transform
+}  // namespace sidestep::sdf::fast_transform
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sidestep::fast_transform {
+namespace sidestep::sdf::fast_transform {
 
 HWY_EXPORT(Slice8);
 HWY_EXPORT(Slice16);
@@ -566,5 +566,5 @@ bool TransformPlane(const Job<std::uint32_t>& job, const Scratch<std::uint32_t>&
   return HWY_DYNAMIC_DISPATCH(Plane32)(job, scratch, y);
 }
 
-}  // namespace sidestep::fast_transform
+}  // namespace sidestep::sdf::fast_transform
 #endif  // HWY_ONCE

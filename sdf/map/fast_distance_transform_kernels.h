@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "sdf/map/distance_transform.h"
-#include "sdf/map/fast_distance_transform_envelope.h"
+#include "sidestep/sdf/map/distance_transform.h"
+#include "sidestep/sdf/map/fast_distance_transform_envelope.h"
 
 /// The SIMD half of FastDistanceTransform: plain structs that say what to do, and two functions
 /// that do it, compiled for several instruction sets. Only fast_distance_transform.cc includes this
@@ -46,7 +46,7 @@
 /// and goes on along y, TransformPlane along z. Lines along y and z are handled in bundles of
 /// neighbours, as many as fill a cache line, whatever the width of the vectors: a *column*. The
 /// lines of one column are the lanes of its *rows*.
-namespace sidestep::fast_transform {
+namespace sidestep::sdf::fast_transform {
 
 inline constexpr std::size_t kColumnBytes = 64;
 
@@ -144,4 +144,4 @@ bool TransformPlane(const Job<std::uint16_t>& job, const Scratch<std::uint16_t>&
 bool TransformPlane(const Job<std::uint32_t>& job, const Scratch<std::uint32_t>& scratch,
                     std::size_t y);
 
-}  // namespace sidestep::fast_transform
+}  // namespace sidestep::sdf::fast_transform

@@ -1,13 +1,13 @@
-#include "sdf/map/nrrd_file.h"
+#include "sidestep/sdf/map/nrrd_file.h"
 
 #include <array>
 #include <charconv>
 #include <cstddef>
 #include <fstream>
 
-#include "core/input_error.h"
+#include "sidestep/core/input_error.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 std::string Number(double value) {
@@ -46,4 +46,4 @@ void WriteNrrd(const OccupancyGrid& occupancy, const std::string& path) {
   Write(occupancy.spec, "uint8", occupancy.cells.data(), occupancy.cells.size(), path);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

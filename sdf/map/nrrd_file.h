@@ -2,10 +2,10 @@
 
 #include <string>
 
-#include "core/grid.h"
-#include "sdf/map/sdf_grid.h"
+#include "sidestep/core/grid.h"
+#include "sidestep/sdf/map/sdf_grid.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// Writes a grid as NRRD with its place in space (raw, little-endian, x fastest): ParaView, 3D
 /// Slicer and ITK open it, and `numpy.fromfile` reads what follows the first empty line.
@@ -14,4 +14,4 @@ namespace sidestep {
 void WriteNrrd(const SdfGrid& field, const std::string& path);            // float, metres
 void WriteNrrd(const OccupancyGrid& occupancy, const std::string& path);  // uint8, 0 or 1
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

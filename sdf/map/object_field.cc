@@ -1,13 +1,13 @@
-#include "sdf/map/object_field.h"
+#include "sidestep/sdf/map/object_field.h"
 
 #include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
-#include "sdf/map/fast_distance_transform.h"
+#include "sidestep/sdf/map/fast_distance_transform.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 void CheckMargin(double margin_m) {
@@ -64,4 +64,4 @@ SdfGrid MakeShapeField(const Shape& shape, double cell_m, double margin_m) {
   return SdfGrid(spec, std::move(distance_m));
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "core/grid.h"
-#include "core/shape.h"
-#include "sdf/map/distance_transform.h"
-#include "sdf/map/sdf_grid.h"
+#include "sidestep/core/grid.h"
+#include "sidestep/core/shape.h"
+#include "sidestep/sdf/map/distance_transform.h"
+#include "sidestep/sdf/map/sdf_grid.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// How many free cells an object's grid needs on each side, so that its field has reached
 /// `margin_m` wherever it ends: ceil(margin / cell), and one more because interpolation next to the
@@ -25,4 +25,4 @@ SdfGrid MakeObjectField(const OccupancyGrid& shape_O, double margin_m,
 /// @throws std::invalid_argument unless cell and margin are > 0.
 SdfGrid MakeShapeField(const Shape& shape, double cell_m, double margin_m);
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -1,9 +1,9 @@
-#include "sdf/map/occupancy_from_scan.h"
+#include "sidestep/sdf/map/occupancy_from_scan.h"
 
 #include <algorithm>
 #include <cstring>
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 ScanRasteriser::ScanRasteriser(const GridSpec& grid_W) {
   CheckGridSpec(grid_W);
@@ -69,4 +69,4 @@ std::vector<std::size_t> ScanRasteriser::Place(const Scan& scan, Eigen::Index be
   return filled;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

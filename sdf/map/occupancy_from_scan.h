@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/grid.h"
-#include "core/observations.h"
+#include "sidestep/core/grid.h"
+#include "sidestep/core/observations.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// Fills the cells that hold at least one point of a scan. Points outside the grid are left out,
 /// and so are points that are not finite (a camera's pixels without depth).
@@ -34,4 +34,4 @@ class ScanRasteriser {
   std::vector<std::size_t> passing_;  // the cells that only later points of the latest scan fill
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

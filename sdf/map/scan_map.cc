@@ -1,4 +1,4 @@
-#include "sdf/map/scan_map.h"
+#include "sidestep/sdf/map/scan_map.h"
 
 #include <algorithm>
 #include <array>
@@ -6,9 +6,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "sdf/map/cells_near.h"
+#include "sidestep/sdf/map/cells_near.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 struct Word {
@@ -122,4 +122,4 @@ void FillObjects(const std::vector<ObjectObservation>& objects, OccupancyGrid* o
   }
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -3,11 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "core/grid.h"
-#include "core/observations.h"
-#include "sdf/map/occupancy_from_scan.h"
+#include "sidestep/core/grid.h"
+#include "sidestep/core/observations.h"
+#include "sidestep/sdf/map/occupancy_from_scan.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// What to take for true of space that a camera does not see: behind things, outside its view.
 enum class UnseenSpace {
@@ -51,4 +51,4 @@ void VisitCellsOnTheWay(const GridSpec& grid_W, const Eigen::Vector3d& p_WStart,
 /// Fills the cells whose centres are inside the named objects.
 void FillObjects(const std::vector<ObjectObservation>& objects, OccupancyGrid* occupancy);
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -1,9 +1,9 @@
-#include "sdf/map/sdf_grid.h"
+#include "sidestep/sdf/map/sdf_grid.h"
 
 #include <stdexcept>
 #include <utility>
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 SdfGrid::SdfGrid(const GridSpec& spec, AlignedVector<float> distance_m)
     : spec_(spec), cells_per_m_(1 / spec.cell_m), distance_m_(std::move(distance_m)) {
@@ -14,4 +14,4 @@ SdfGrid::SdfGrid(const GridSpec& spec, AlignedVector<float> distance_m)
   last_center_m_ = spec_.Center(spec_.size[0] - 1, spec_.size[1] - 1, spec_.size[2] - 1);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "core/grid.h"
-#include "sdf/aligned_vector.h"
+#include "sidestep/core/grid.h"
+#include "sidestep/sdf/aligned_vector.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// What an SdfGrid says of one point, in the grid's own frame.
 struct GridSample {
@@ -107,4 +107,4 @@ inline GridSample SdfGrid::Interpolate(const Eigen::Vector3d& p) const {
   return sample;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

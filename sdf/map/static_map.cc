@@ -1,6 +1,6 @@
-#include "sdf/map/static_map.h"
+#include "sidestep/sdf/map/static_map.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 void StaticMap::Set(const OccupancyGrid& occupancy) {
   if (occupancy.spec == occupancy_.spec && occupancy.cells == occupancy_.cells) return;
@@ -16,4 +16,4 @@ std::shared_ptr<const SdfGrid> StaticMap::Field() {
   return field_;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -2,11 +2,11 @@
 
 #include <memory>
 
-#include "core/grid.h"
-#include "sdf/map/fast_distance_transform.h"
-#include "sdf/map/sdf_grid.h"
+#include "sidestep/core/grid.h"
+#include "sidestep/sdf/map/fast_distance_transform.h"
+#include "sidestep/sdf/map/sdf_grid.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// The field of what does not move. Transformed only when it is asked for and has changed.
 class StaticMap {
@@ -26,4 +26,4 @@ class StaticMap {
   std::shared_ptr<const SdfGrid> field_;  // null: not transformed since it changed
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

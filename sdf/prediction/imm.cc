@@ -1,15 +1,15 @@
-#include "sdf/prediction/imm.h"
+#include "sidestep/sdf/prediction/imm.h"
 
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
 #include <vector>
 
-#include "sdf/prediction/kalman_ca.h"
-#include "sdf/prediction/kalman_cv.h"
-#include "sdf/prediction/kalman_turn.h"
+#include "sidestep/sdf/prediction/kalman_ca.h"
+#include "sidestep/sdf/prediction/kalman_cv.h"
+#include "sidestep/sdf/prediction/kalman_turn.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 constexpr int kNumModels = 3;
@@ -105,4 +105,4 @@ class ImmPredictor final : public ObstaclePredictor {
 
 std::unique_ptr<ObstaclePredictor> MakeImmPredictor() { return std::make_unique<ImmPredictor>(); }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -2,9 +2,9 @@
 
 #include <memory>
 
-#include "sdf/prediction/predictor.h"
+#include "sidestep/sdf/prediction/predictor.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// Interacting multiple models: filters of constant velocity, constant acceleration and coordinated
 /// turn run side by side, exchange what they believe in proportion to how likely each is, and the
@@ -12,4 +12,4 @@ namespace sidestep {
 /// Source: Blom & Bar-Shalom, IEEE Trans. Automatic Control 33(8):780-783, 1988.
 std::unique_ptr<ObstaclePredictor> MakeImmPredictor();
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -1,6 +1,6 @@
-#include "sdf/prediction/kalman_ca.h"
+#include "sidestep/sdf/prediction/kalman_ca.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 constexpr double kCaNoise = 4;  // m^2/s^5
@@ -51,4 +51,4 @@ std::unique_ptr<ObstaclePredictor> MakeKalmanCaPredictor() {
   return std::make_unique<KalmanCaPredictor>();
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -2,10 +2,10 @@
 
 #include <memory>
 
-#include "sdf/prediction/motion_filter.h"
-#include "sdf/prediction/predictor.h"
+#include "sidestep/sdf/prediction/motion_filter.h"
+#include "sidestep/sdf/prediction/predictor.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// Constant acceleration with white noise of jerk, density 4 [m^2/s^5] an axis:
 ///   p' = p + v dt + a dt^2/2,  v' = v + a dt,  a' = a.
@@ -15,4 +15,4 @@ extern const MotionModel kConstantAcceleration;
 /// A Kalman filter on that model.
 std::unique_ptr<ObstaclePredictor> MakeKalmanCaPredictor();
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -1,6 +1,6 @@
-#include "sdf/prediction/kalman_cv.h"
+#include "sidestep/sdf/prediction/kalman_cv.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 constexpr double kCvNoise = 0.1;  // m^2/s^3
@@ -45,4 +45,4 @@ std::unique_ptr<ObstaclePredictor> MakeKalmanCvPredictor() {
   return std::make_unique<KalmanCvPredictor>();
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -1,8 +1,8 @@
-#include "sdf/prediction/kalman_turn.h"
+#include "sidestep/sdf/prediction/kalman_turn.h"
 
 #include <cmath>
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 constexpr double kSpeedNoise = 0.1;  // m^2/s^3, of each axis of the velocity
@@ -72,4 +72,4 @@ std::unique_ptr<ObstaclePredictor> MakeKalmanTurnPredictor() {
   return std::make_unique<KalmanTurnPredictor>();
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

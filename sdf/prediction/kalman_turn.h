@@ -2,10 +2,10 @@
 
 #include <memory>
 
-#include "sdf/prediction/motion_filter.h"
-#include "sdf/prediction/predictor.h"
+#include "sidestep/sdf/prediction/motion_filter.h"
+#include "sidestep/sdf/prediction/predictor.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// Coordinated turn: a horizontal velocity that turns about z at a constant rate, straight on in z,
 /// with white noise of acceleration and of the change of the rate:
@@ -17,4 +17,4 @@ extern const MotionModel kCoordinatedTurn;
 /// A Kalman filter on that model.
 std::unique_ptr<ObstaclePredictor> MakeKalmanTurnPredictor();
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

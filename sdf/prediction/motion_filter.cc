@@ -1,10 +1,10 @@
-#include "sdf/prediction/motion_filter.h"
+#include "sidestep/sdf/prediction/motion_filter.h"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 // Over longer ones, what chance does to the rate of turn would not reach the position.
@@ -83,4 +83,4 @@ PredictedMotion PredictByFilter(const MotionModel& model, const TrackedObject& o
           }};
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

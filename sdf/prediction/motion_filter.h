@@ -2,10 +2,10 @@
 
 #include <Eigen/Core>
 
-#include "core/time.h"
-#include "sdf/prediction/predictor.h"
+#include "sidestep/core/time.h"
+#include "sidestep/sdf/prediction/predictor.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// The state that all motion models share, so that their estimates can be mixed: position,
 /// velocity, acceleration (x, y, z in W) and the rate of turn about z.
@@ -80,4 +80,4 @@ class MotionFilter {
 /// Runs a filter of one model over the object's history and goes on with it.
 PredictedMotion PredictByFilter(const MotionModel& model, const TrackedObject& object);
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -3,11 +3,11 @@
 #include <Eigen/Core>
 #include <functional>
 
-#include "core/pose.h"
-#include "core/time.h"
-#include "sdf/tracking/tracked_object.h"
+#include "sidestep/core/pose.h"
+#include "sidestep/core/time.h"
+#include "sidestep/sdf/tracking/tracked_object.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// Where one object will be, as believed at its latest sighting. Both are pure functions of the
 /// time of the episode (not of so much ahead), safe from many threads, finite and continuous at
@@ -37,4 +37,4 @@ class ObstaclePredictor {
   }
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -1,11 +1,11 @@
-#include "sdf/prediction/registry.h"
+#include "sidestep/sdf/prediction/registry.h"
 
 #include <stdexcept>
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 #define SIDESTEP_PREDICTOR(name, make, file) std::unique_ptr<ObstaclePredictor> make();
-#include "sdf/prediction/predictors.def"
+#include "sidestep/sdf/prediction/predictors.def"
 #undef SIDESTEP_PREDICTOR
 
 namespace {
@@ -16,7 +16,7 @@ struct Entry {
 };
 constexpr Entry kPredictors[] = {
 #define SIDESTEP_PREDICTOR(name, make, file) {name, &(make)},
-#include "sdf/prediction/predictors.def"
+#include "sidestep/sdf/prediction/predictors.def"
 #undef SIDESTEP_PREDICTOR
 };
 
@@ -37,4 +37,4 @@ std::unique_ptr<ObstaclePredictor> MakePredictor(const std::string& name) {
   throw std::invalid_argument("unknown predictor '" + name + "'; there are: " + known);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

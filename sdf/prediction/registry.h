@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "sdf/prediction/predictor.h"
+#include "sidestep/sdf/prediction/predictor.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// The names of all predictors, as scenarios write them.
 std::vector<std::string> PredictorNames();
@@ -14,4 +14,4 @@ std::vector<std::string> PredictorNames();
 /// @throws std::invalid_argument for an unknown name; the message lists those that exist.
 std::unique_ptr<ObstaclePredictor> MakePredictor(const std::string& name);
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

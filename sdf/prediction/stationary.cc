@@ -1,6 +1,6 @@
-#include "sdf/prediction/stationary.h"
+#include "sidestep/sdf/prediction/stationary.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 class StationaryPredictor final : public ObstaclePredictor {
@@ -20,4 +20,4 @@ std::unique_ptr<ObstaclePredictor> MakeStationaryPredictor() {
   return std::make_unique<StationaryPredictor>();
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

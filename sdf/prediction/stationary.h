@@ -2,11 +2,11 @@
 
 #include <memory>
 
-#include "sdf/prediction/predictor.h"
+#include "sidestep/sdf/prediction/predictor.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// Everything stays where it was last seen. Its covariance is that of the sighting alone.
 std::unique_ptr<ObstaclePredictor> MakeStationaryPredictor();
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -1,6 +1,6 @@
-#include "sdf/prediction/two_frame.h"
+#include "sidestep/sdf/prediction/two_frame.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 class TwoFramePredictor final : public ObstaclePredictor {
@@ -27,4 +27,4 @@ std::unique_ptr<ObstaclePredictor> MakeTwoFramePredictor() {
   return std::make_unique<TwoFramePredictor>();
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -2,9 +2,9 @@
 
 #include <memory>
 
-#include "sdf/prediction/predictor.h"
+#include "sidestep/sdf/prediction/predictor.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// Constant velocity, from two sightings:  p(t) = p_n + (p_n - p_m) / (t_n - t_m) (t - t_n),
 /// n the latest, m the one whose age is nearest to kVelocityBaseline (tracked_object.h says why not
@@ -13,4 +13,4 @@ namespace sidestep {
 /// Source: the tracker of Finean, Merkt & Havoutis (ICAPS 2021), which was fed once a re-plan.
 std::unique_ptr<ObstaclePredictor> MakeTwoFramePredictor();
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -1,8 +1,8 @@
-#include "sdf/tracking/background.h"
+#include "sidestep/sdf/tracking/background.h"
 
 #include <iterator>
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 constexpr double kLostShare = 0.05;
@@ -40,4 +40,4 @@ std::vector<int> Background::ReleaseVanished(const OccupancyGrid& occupancy) {
   return released;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

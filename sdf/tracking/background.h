@@ -5,10 +5,10 @@
 #include <map>
 #include <vector>
 
-#include "core/grid.h"
-#include "sdf/tracking/segmentation.h"
+#include "sidestep/core/grid.h"
+#include "sidestep/sdf/tracking/segmentation.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// The cells of things that rest. What is filled and not background is the foreground, where things
 /// are told apart: so a thing that moves past a resting one and touches it stays a component of its
@@ -39,4 +39,4 @@ class Background {
   std::map<int, Owned> owned_;               // by owner
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

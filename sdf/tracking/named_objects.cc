@@ -1,12 +1,12 @@
-#include "sdf/tracking/named_objects.h"
+#include "sidestep/sdf/tracking/named_objects.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/shape.h"
-#include "sdf/map/object_field.h"
+#include "sidestep/core/shape.h"
+#include "sidestep/sdf/map/object_field.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 void NamedObjects::Update(const std::vector<ObjectObservation>& objects, EpisodeTime t) {
   for (const ObjectObservation& seen : objects) {
@@ -43,4 +43,4 @@ std::vector<NamedObject> NamedObjects::Objects() const {
   return objects;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

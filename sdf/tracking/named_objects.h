@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "core/observations.h"
-#include "sdf/tracking/tracked_object.h"
+#include "sidestep/core/observations.h"
+#include "sidestep/sdf/tracking/tracked_object.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// An object with a name, and how it is turned: TrackedObject keeps the axes of W.
 struct NamedObject {
@@ -46,4 +46,4 @@ class NamedObjects {
   std::map<int, Track> tracks_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

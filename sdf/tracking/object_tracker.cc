@@ -1,4 +1,4 @@
-#include "sdf/tracking/object_tracker.h"
+#include "sidestep/sdf/tracking/object_tracker.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,10 @@
 #include <tuple>
 #include <utility>
 
-#include "sdf/map/object_field.h"
-#include "sdf/stopwatch.h"
+#include "sidestep/sdf/map/object_field.h"
+#include "sidestep/sdf/stopwatch.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 // How far a thing's border may move between two scans, when it comes off another.
@@ -306,4 +306,4 @@ void ObjectTracker::TakeShape(Track& track, const Component& component) const {
       MakeObjectField(shape_O, options_.max_distance_m, options_.convention));
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

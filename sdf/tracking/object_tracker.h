@@ -6,15 +6,15 @@
 #include <utility>
 #include <vector>
 
-#include "core/grid.h"
-#include "core/recording.h"
-#include "core/time.h"
-#include "sdf/map/distance_transform.h"
-#include "sdf/tracking/background.h"
-#include "sdf/tracking/segmentation.h"
-#include "sdf/tracking/tracked_object.h"
+#include "sidestep/core/grid.h"
+#include "sidestep/core/samples.h"
+#include "sidestep/core/time.h"
+#include "sidestep/sdf/map/distance_transform.h"
+#include "sidestep/sdf/tracking/background.h"
+#include "sidestep/sdf/tracking/segmentation.h"
+#include "sidestep/sdf/tracking/tracked_object.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 struct ObjectTrackerOptions {
   double max_distance_m = 0;   ///< > 0; objects' fields are padded for this
@@ -136,4 +136,4 @@ class ObjectTracker {
   std::optional<EpisodeTime> t_last_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

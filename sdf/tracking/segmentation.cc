@@ -1,10 +1,10 @@
-#include "sdf/tracking/segmentation.h"
+#include "sidestep/sdf/tracking/segmentation.h"
 
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 // Neighbouring filled cells of one row of the grid, first <= i <= last.
@@ -183,4 +183,4 @@ OccupancyGrid CutOut(const Component& component, const GridSpec& grid) {
   return shape;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "core/grid.h"
+#include "sidestep/core/grid.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// Filled cells that hang together.
 struct Component {
@@ -33,4 +33,4 @@ std::vector<Component> FindComponents(const OccupancyGrid& occupancy);
 /// The component alone, in a grid that fits its box, in W.
 OccupancyGrid CutOut(const Component& component, const GridSpec& grid);
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

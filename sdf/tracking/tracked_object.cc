@@ -1,9 +1,9 @@
-#include "sdf/tracking/tracked_object.h"
+#include "sidestep/sdf/tracking/tracked_object.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 const Sighting& SightingBefore(const std::vector<Sighting>& history, HorizonOffset baseline) {
   const Sighting& latest = history.back();
@@ -23,4 +23,4 @@ Eigen::Vector3d MeanVelocity(const std::vector<Sighting>& history, HorizonOffset
   return (latest.p_WO - earlier.p_WO) / elapsed_s;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

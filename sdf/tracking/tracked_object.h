@@ -4,11 +4,11 @@
 #include <memory>
 #include <vector>
 
-#include "core/pose.h"
-#include "core/time.h"
-#include "sdf/map/sdf_grid.h"
+#include "sidestep/core/pose.h"
+#include "sidestep/core/time.h"
+#include "sidestep/sdf/map/sdf_grid.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// Where an object was seen.
 struct Sighting {
@@ -49,4 +49,4 @@ Eigen::Vector3d MeanVelocity(const std::vector<Sighting>& history, HorizonOffset
 /// often the authors' tracker was fed, once for each re-plan.
 inline constexpr HorizonOffset kVelocityBaseline{0.1};
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

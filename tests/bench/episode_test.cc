@@ -1,5 +1,5 @@
 // The loop itself, with a robot that has no inertia: what it does when, and what it makes of it.
-#include "bench/episode.h"
+#include "sidestep/bench/episode.h"
 
 #include <gtest/gtest.h>
 
@@ -9,12 +9,12 @@
 #include "tests/bench/kinematic_world.h"
 #include "tests/support/planar_arm.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 // The planar arm swings by 1.6 rad; a ball crosses its way, from below at the tip's half way.
-Scenario MakeScenario() {
-  return ParseScenario(R"(
+scenarios::Scenario MakeScenario() {
+  return scenarios::ParseScenario(R"(
 description: A planar arm swings past a ball
 robot: {model: planar_arm, base: {position_m: [0, 0, 0]}}
 task: {start: [-0.8, 0], goal: [0.8, 0]}
@@ -32,15 +32,15 @@ replanning: {rate_hz: 10, latency_s: 0.1}
 sensor: {name: occupancy, rate_hz: 30}
 seed: 1
 )",
-                       "loop.yaml");
+                                  "loop.yaml");
 }
 
 class Episode : public ::testing::Test {
  protected:
   EpisodeResult Run() { return RunEpisode(scenario_, arm_, world_.Factory()); }
 
-  RobotModel arm_ = MakePlanarArm();
-  Scenario scenario_ = MakeScenario();
+  robot::RobotModel arm_ = MakePlanarArm();
+  scenarios::Scenario scenario_ = MakeScenario();
   KinematicWorld world_;
 };
 
@@ -159,4 +159,4 @@ TEST_F(Episode, IsTheSameTwice) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -5,15 +5,15 @@
 #include <map>
 #include <string>
 
-#include "bench/metrics/registry.h"
+#include "sidestep/bench/metrics/registry.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 // One joint goes from 0 to 1 rad in 1 s by the cubic q = 3t^2 - 2t^3 (rest to rest, constant jerk
 // -12), is told so exactly, lags by 1 mrad, and rests for another half second.
-Recording SmoothReach() {
-  Recording recording;
+record::Recording SmoothReach() {
+  record::Recording recording;
   recording.q_start = Eigen::VectorXd::Zero(1);
   recording.q_goal = Eigen::VectorXd::Ones(1);
   recording.v_max = Eigen::VectorXd::Constant(1, 2.0);
@@ -102,7 +102,7 @@ TEST(Metrics, ThatLookBeyondTheEndOfARecordingAreNotANumber) {
 
 TEST(Metrics, OfAnEmptyRecordingAreZeroOrNotANumberAndNeverThrow) {
   for (const Metric& metric : Metrics()) {
-    const double value = metric.compute(Recording());
+    const double value = metric.compute(record::Recording());
     EXPECT_TRUE(std::isnan(value) || value == 0) << metric.name << " is " << value;
   }
 }
@@ -118,4 +118,4 @@ TEST(Metrics, HaveNamesThatEndInTheirUnit) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::bench

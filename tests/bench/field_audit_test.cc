@@ -1,5 +1,5 @@
 // The audit finds the errors that a field was given, where it was given them.
-#include "bench/field_audit.h"
+#include "sidestep/bench/field_audit.h"
 
 #include <gtest/gtest.h>
 
@@ -11,14 +11,14 @@
 #include <stdexcept>
 #include <vector>
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 constexpr double kClamp_m = 0.3, kCell_m = 0.04;
 
 // A cube of 0.4 m at rest, and a ball that flies along x at 1 m/s.
-Scenario MakeScenario() {
-  Scenario scenario;
+scenarios::Scenario MakeScenario() {
+  scenarios::Scenario scenario;
   scenario.grid = {Eigen::Vector3d::Constant(-0.8), kCell_m, {41, 41, 41}};
   scenario.static_boxes = {{"cube", Pose(), Eigen::Vector3d::Constant(0.4)}};
   scenario.seed = 5;
@@ -28,7 +28,7 @@ Scenario MakeScenario() {
 Eigen::Vector3d BallCenter(EpisodeTime t) { return {t.seconds() - 0.6, 0.5, 0}; }
 constexpr double kBallRadius_m = 0.1;
 
-class FlyingBall final : public WorldTruth {
+class FlyingBall final : public robot::WorldTruth {
  public:
   std::vector<ObjectObservation> ObstaclesAt(EpisodeTime t) const override {
     ObjectObservation ball;
@@ -49,15 +49,15 @@ double Truth(const Eigen::Vector3d& p, EpisodeTime t) {
 }
 
 // The truth, falsified as a test wants it.
-class FalseField final : public DistanceField {
+class FalseField final : public sdf::DistanceField {
  public:
   using Error = std::function<double(double truth_m, const Eigen::Vector3d& p_W, EpisodeTime t)>;
   explicit FalseField(Error error, Eigen::AngleAxisd turn = Eigen::AngleAxisd::Identity())
       : error_(std::move(error)), turn_(turn) {}
 
-  DistanceSample Sample(const Eigen::Vector3d& p_WQ, EpisodeTime t) const override {
+  sdf::DistanceSample Sample(const Eigen::Vector3d& p_WQ, EpisodeTime t) const override {
     const double truth_m = Truth(p_WQ, t);
-    DistanceSample sample;
+    sdf::DistanceSample sample;
     sample.distance_m = std::min(truth_m, kClamp_m) + error_(truth_m, p_WQ, t);
     constexpr double kStep_m = 1e-6;
     for (int a = 0; a < 3; ++a) {
@@ -68,11 +68,11 @@ class FalseField final : public DistanceField {
     return sample;
   }
   void SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime t,
-                  DistanceSamples& samples) const override {
+                  sdf::DistanceSamples& samples) const override {
     samples.distance_m.resize(p_WQ.cols());
     samples.gradient_W.resize(3, p_WQ.cols());
     for (Eigen::Index s = 0; s < p_WQ.cols(); ++s) {
-      const DistanceSample sample = Sample(p_WQ.col(s), t);
+      const sdf::DistanceSample sample = Sample(p_WQ.col(s), t);
       samples.distance_m(s) = sample.distance_m;
       samples.gradient_W.col(s) = sample.gradient_W;
     }
@@ -176,4 +176,4 @@ TEST(FieldAudit, RefusesTimesInThePastAndNoPoints) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::bench

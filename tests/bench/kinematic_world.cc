@@ -7,10 +7,10 @@
 #include <optional>
 #include <utility>
 
-#include "core/shape.h"
-#include "core/trajectory.h"
+#include "sidestep/core/shape.h"
+#include "sidestep/core/trajectory.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 constexpr int kTicksPerSecond = 1000, kTicksPerSample = 10;
@@ -31,11 +31,11 @@ double Distance(const std::vector<Solid>& solids, const Eigen::Vector3d& p_W) {
 // The scenario's shapes at any time.
 class Shapes {
  public:
-  explicit Shapes(const Scenario& scenario) : scenario_(scenario) {}
+  explicit Shapes(const scenarios::Scenario& scenario) : scenario_(scenario) {}
 
   std::vector<ObjectObservation> MovingAt(EpisodeTime t) const {
     std::vector<ObjectObservation> obstacles;
-    for (const MovingObstacle& obstacle : scenario_.moving_obstacles) {
+    for (const scenarios::MovingObstacle& obstacle : scenario_.moving_obstacles) {
       ObjectObservation& seen = obstacles.emplace_back();
       seen.id = obstacle.name;
       seen.t = t;
@@ -48,20 +48,20 @@ class Shapes {
   // Everything solid at one moment.
   std::vector<Solid> SolidsAt(EpisodeTime t) const {
     std::vector<Solid> solids;
-    for (const MovingObstacle& obstacle : scenario_.moving_obstacles) {
+    for (const scenarios::MovingObstacle& obstacle : scenario_.moving_obstacles) {
       solids.push_back({obstacle.shape, PoseAt(obstacle, t).Inverse()});
     }
-    for (const StaticBox& box : scenario_.static_boxes) {
+    for (const scenarios::StaticBox& box : scenario_.static_boxes) {
       solids.push_back({Box{box.size_m}, box.X_WO.Inverse()});
     }
     return solids;
   }
 
  private:
-  const Scenario& scenario_;
+  const scenarios::Scenario& scenario_;
 };
 
-class Robot final : public RobotInterface {
+class Robot final : public robot::RobotInterface {
  public:
   Robot(KinematicWorld& world, const Eigen::VectorXd& q) : world_(world), q_(q) {
     v_ = a_ = Eigen::VectorXd::Zero(q.size());
@@ -113,9 +113,9 @@ class Robot final : public RobotInterface {
 };
 
 // Sees the centre of every filled cell.
-class CellSensor final : public Sensor {
+class CellSensor final : public robot::Sensor {
  public:
-  CellSensor(const KinematicWorld& world, const Scenario& scenario)
+  CellSensor(const KinematicWorld& world, const scenarios::Scenario& scenario)
       : world_(world), scenario_(scenario), shapes_(scenario) {}
 
   EpisodeTime NextDue() const override {
@@ -148,15 +148,16 @@ class CellSensor final : public Sensor {
 
  private:
   const KinematicWorld& world_;
-  const Scenario& scenario_;
+  const scenarios::Scenario& scenario_;
   Shapes shapes_;
   int num_scans_ = 0;
 };
 
 // Judges by the robot's spheres, the mounted one left out.
-class SphereTruth final : public WorldTruth {
+class SphereTruth final : public robot::WorldTruth {
  public:
-  SphereTruth(const Robot& robot, const RobotModel& model, const Scenario& scenario)
+  SphereTruth(const Robot& robot, const robot::RobotModel& model,
+              const scenarios::Scenario& scenario)
       : robot_(robot), model_(model), shapes_(scenario) {}
 
   std::vector<ObjectObservation> ObstaclesAt(EpisodeTime t) const override {
@@ -171,7 +172,7 @@ class SphereTruth final : public WorldTruth {
       sample.t = tick.t;
       sample.clearance_m = std::numeric_limits<double>::infinity();
       const std::vector<Solid> solids = shapes_.SolidsAt(tick.t);
-      const SphereCenters centers = model_.ComputeSphereCenters(tick.q, false);
+      const robot::SphereCenters centers = model_.ComputeSphereCenters(tick.q, false);
       for (Eigen::Index s = 1; s < centers.p_WS.cols(); ++s) {
         const double distance_m = Distance(solids, centers.p_WS.col(s));
         sample.clearance_m = std::min(sample.clearance_m, distance_m - model_.sphere_radii_m()(s));
@@ -185,13 +186,13 @@ class SphereTruth final : public WorldTruth {
 
  private:
   const Robot& robot_;
-  const RobotModel& model_;
+  const robot::RobotModel& model_;
   Shapes shapes_;
   std::size_t judged_ = 0;
 };
 
 struct Stage {
-  Stage(KinematicWorld& world, const Scenario& scenario, const RobotModel& model)
+  Stage(KinematicWorld& world, const scenarios::Scenario& scenario, const robot::RobotModel& model)
       : robot(world, scenario.q_start), sensor(world, scenario), truth(robot, model, scenario) {}
   Robot robot;
   CellSensor sensor;
@@ -201,18 +202,18 @@ struct Stage {
 }  // namespace
 
 WorldFactory KinematicWorld::Factory() {
-  return [this](const Scenario& scenario, const RobotModel& model) {
+  return [this](const scenarios::Scenario& scenario, const robot::RobotModel& model) {
     const auto stage = std::make_shared<Stage>(*this, scenario, model);
     EpisodeWorld world;
     world.owner = stage;
     world.robot = &stage->robot;
     world.sensor = &stage->sensor;
     if (judges) world.truth = &stage->truth;
-    for (const MovingObstacle& obstacle : scenario.moving_obstacles) {
+    for (const scenarios::MovingObstacle& obstacle : scenario.moving_obstacles) {
       world.obstacles.push_back(obstacle.name);
     }
     return world;
   };
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

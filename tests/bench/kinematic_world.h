@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "bench/episode.h"
+#include "sidestep/bench/episode.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 /// A robot without inertia in a world of shapes, for the loop's own tests: no simulator.
 struct KinematicWorld {
@@ -22,4 +22,4 @@ struct KinematicWorld {
   WorldFactory Factory();
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::bench

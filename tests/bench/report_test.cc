@@ -9,13 +9,13 @@
 #include <stdexcept>
 #include <string>
 
-#include "bench/report/figure.h"
-#include "bench/report/gnuplot.h"
-#include "bench/report/html_page.h"
-#include "core/input_error.h"
+#include "sidestep/bench/report/figure.h"
+#include "sidestep/bench/report/gnuplot.h"
+#include "sidestep/bench/report/html_page.h"
+#include "sidestep/core/input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 using ::testing::AllOf;
@@ -91,4 +91,4 @@ TEST(Format, ShowsADashForWhatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::bench

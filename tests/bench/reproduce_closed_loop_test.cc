@@ -7,25 +7,27 @@
 #include <string>
 #include <variant>
 
-#include "bench/reproduce/closed_loop.h"
-#include "bench/reproduce/closed_loop_report.h"
-#include "scenarios/scenario.h"
+#include "sidestep/bench/reproduce/closed_loop.h"
+#include "sidestep/bench/reproduce/closed_loop_report.h"
+#include "sidestep/scenarios/scenario.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 TEST(ClosedLoop, TakesThePublishedSettings) {
-  const Scenario walkway = LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/hsr_walkway.yaml");
-  const Scenario scenario = PublishedClosedLoop(walkway, 1.2, 64);
+  const scenarios::Scenario walkway =
+      scenarios::LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/hsr_walkway.yaml");
+  const scenarios::Scenario scenario = PublishedClosedLoop(walkway, 1.2, 64);
   EXPECT_EQ(scenario.epsilon_m, 0.3);
   EXPECT_EQ(scenario.sigma_obs, 0.05);
   EXPECT_EQ(scenario.num_interpolated, 0);
   EXPECT_EQ(scenario.grid.size, (std::array<int, 3>{64, 64, 64}));
   EXPECT_EQ(scenario.grid.cell_m, 0.04);
-  EXPECT_EQ(std::get<LinearMotion>(scenario.moving_obstacles.at(0).motion).speed_m_s, 1.2);
+  EXPECT_EQ(std::get<scenarios::LinearMotion>(scenario.moving_obstacles.at(0).motion).speed_m_s,
+            1.2);
 }
 
 TEST(ClosedLoop, PredictsAllRemainingStepsAtEachStep) {
@@ -106,4 +108,4 @@ TEST(ClosedLoopReport, PlotsEachJointAHundredTimesASecond) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -9,16 +9,16 @@
 #include <string>
 #include <vector>
 
-#include "bench/reproduce/open_loop_study.h"
-#include "bench/reproduce/published_table.h"
-#include "sdf/distance_field.h"
+#include "sidestep/bench/reproduce/open_loop_study.h"
+#include "sidestep/bench/reproduce/published_table.h"
+#include "sidestep/sdf/distance_field.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
-constexpr Knowledge kStatic = Knowledge::kStatic;
-constexpr Knowledge kUpdate = Knowledge::kExecuteAndUpdate;
-constexpr Knowledge kFull = Knowledge::kFullKnowledge;
+constexpr sdf::Knowledge kStatic = sdf::Knowledge::kStatic;
+constexpr sdf::Knowledge kUpdate = sdf::Knowledge::kExecuteAndUpdate;
+constexpr sdf::Knowledge kFull = sdf::Knowledge::kFullKnowledge;
 
 const std::string kModels = SIDESTEP_SOURCE_DIR "/models";
 
@@ -28,11 +28,11 @@ OpenLoopExperiment AtSpeed(const std::string& name, double speed_m_s) {
   return experiment;
 }
 
-std::map<Knowledge, OpenLoopResult> RunOne(const OpenLoopExperiment& experiment, int pair,
-                                           OpenLoopStudyOptions options) {
+std::map<sdf::Knowledge, OpenLoopResult> RunOne(const OpenLoopExperiment& experiment, int pair,
+                                                OpenLoopStudyOptions options) {
   options.pairs = {pair};
   const OpenLoopStudy study = RunOpenLoopStudy(experiment, kModels, options);
-  std::map<Knowledge, OpenLoopResult> results;
+  std::map<sdf::Knowledge, OpenLoopResult> results;
   for (const auto& [knowledge, entry] : study.rows.at(0).cases) results[knowledge] = entry.result;
   return results;
 }
@@ -56,7 +56,7 @@ TEST_P(PublishedRows, ComeOutAsPublished) {
   const PublishedRow& row = GetParam();
   const auto results = RunOne(AtSpeed(row.experiment, row.speed_m_s), row.pair, {});
   int i = 0;
-  for (const Knowledge knowledge : {kStatic, kUpdate, kFull}) {
+  for (const sdf::Knowledge knowledge : {kStatic, kUpdate, kFull}) {
     const OpenLoopResult& result = results.at(knowledge);
     // In 31 undamped solves, differences of the last bit grow to about 1e-9 where nothing is
     // frozen.
@@ -143,13 +143,13 @@ TEST(OpenLoop, IgnoresThePandasMountSphereInTheIntendedGeometryOnly) {
       << "the base would collide at every state";
 }
 
-class EmptyField final : public DistanceField {
+class EmptyField final : public sdf::DistanceField {
  public:
-  DistanceSample Sample(const Eigen::Vector3d&, EpisodeTime) const override {
+  sdf::DistanceSample Sample(const Eigen::Vector3d&, EpisodeTime) const override {
     return {max_distance_m(), Eigen::Vector3d::Zero(), true};
   }
   void SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime,
-                  DistanceSamples& samples) const override {
+                  sdf::DistanceSamples& samples) const override {
     samples.distance_m.setConstant(p_WQ.cols(), max_distance_m());
     samples.gradient_W.setZero(3, p_WQ.cols());
     samples.num_outside = 0;
@@ -161,13 +161,13 @@ TEST(OpenLoop, HasTheClosedFormGpCostInAnEmptyWorld) {
   const EmptyField empty;
   for (const std::string& name : OpenLoopExperimentNames()) {
     const OpenLoopExperiment experiment = MakeOpenLoopExperiment(name);
-    const RobotModel robot =
-        RobotModel::FromFile(kModels + "/" + experiment.published_robot, experiment.X_WB);
+    const robot::RobotModel robot =
+        robot::RobotModel::FromFile(kModels + "/" + experiment.published_robot, experiment.X_WB);
     for (const auto& [start, goal] : experiment.pairs) {
       const OpenLoopTask task{robot.configurations().at(start), robot.configurations().at(goal)};
       const OpenLoopResult result = RunOpenLoop(
-          experiment, robot, task, [&](int, int) -> const DistanceField& { return empty; },
-          std::vector<const DistanceField*>(31, &empty), false);
+          experiment, robot, task, [&](int, int) -> const sdf::DistanceField& { return empty; },
+          std::vector<const sdf::DistanceField*>(31, &empty), false);
       // From rest to rest: 6 |dq|^2 / T^3. The priors of sigma 1e-4 give way by 3e-8.
       const double expected = 6 * (task.q_goal - task.q_start).squaredNorm() / std::pow(3.0, 3);
       EXPECT_NEAR(result.gp_cost / expected, 1, 1e-7) << name << " " << start << " " << goal;
@@ -196,4 +196,4 @@ TEST(OpenLoop, RefusesAPairThatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "bench/reproduce/open_loop_study.h"
-#include "bench/reproduce/predicted_maps.h"
-#include "bench/reproduce/published_maps.h"
-#include "bench/reproduce/true_clearance.h"
+#include "sidestep/bench/reproduce/open_loop_study.h"
+#include "sidestep/bench/reproduce/predicted_maps.h"
+#include "sidestep/bench/reproduce/published_maps.h"
+#include "sidestep/bench/reproduce/true_clearance.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 constexpr double kClamp_m = 0.42;
@@ -36,10 +36,12 @@ struct World {
   OpenLoopExperiment experiment = MakeOpenLoopExperiment("panda_hsr");
   double speed_m_s;
   PublishedMaps MakeMaps() const {
-    return PublishedMaps(experiment, BoxAlignment::kOneCellLow, DistanceConvention::kBwdist, 1);
+    return PublishedMaps(experiment, BoxAlignment::kOneCellLow, sdf::DistanceConvention::kBwdist,
+                         1);
   }
   PredictedMaps MakePredictions(const PublishedMaps& maps) const {
-    return PredictedMaps(experiment, maps, DistanceConvention::kBwdist, "two_frame", kClamp_m, 1);
+    return PredictedMaps(experiment, maps, sdf::DistanceConvention::kBwdist, "two_frame", kClamp_m,
+                         1);
   }
 };
 
@@ -47,7 +49,7 @@ TEST(PredictedMaps, KnowOfNoMotionAtFirst) {
   const World world(1.4);
   const PublishedMaps maps = world.MakeMaps();
   const PredictedMaps predictions = world.MakePredictions(maps);
-  const DistanceField& first = *maps.FieldsAt(1.4)[0];
+  const sdf::DistanceField& first = *maps.FieldsAt(1.4)[0];
   for (const Eigen::Vector3d& p_W : Points()) {
     const double expected = std::min(first.Sample(p_W, EpisodeTime()).distance_m, kClamp_m);
     EXPECT_EQ(predictions.At(1.4, 0, 0).Sample(p_W, EpisodeTime()).distance_m, expected);
@@ -61,7 +63,7 @@ TEST(PredictedMaps, AreFullKnowledgeWhereTheObstacleMovesByWholeCells) {
   const World world(2.0);
   const PublishedMaps maps = world.MakeMaps();
   const PredictedMaps predictions = world.MakePredictions(maps);
-  const std::vector<const DistanceField*> truth = maps.FieldsAt(2.0);
+  const std::vector<const sdf::DistanceField*> truth = maps.FieldsAt(2.0);
   int near_the_obstacle = 0;
   for (const int k : {2, 5, 9, 12}) {
     for (const Eigen::Vector3d& p_W : Points()) {
@@ -83,11 +85,11 @@ TEST(OpenLoop, UnderPredictionPassesTheHsrWithLessEffortThanUnderUpdates) {
   panda.speeds_m_s = {1.4};
   const OpenLoopStudy study = RunOpenLoopStudy(
       panda, kModels,
-      {.cases = {Knowledge::kExecuteAndUpdate, Knowledge::kPrediction}, .pairs = {1}});
+      {.cases = {sdf::Knowledge::kExecuteAndUpdate, sdf::Knowledge::kPrediction}, .pairs = {1}});
   const auto& cases = study.rows.at(0).cases;
-  EXPECT_EQ(cases.at(Knowledge::kPrediction).result.colliding_states, 0);
-  EXPECT_LT(cases.at(Knowledge::kPrediction).result.gp_cost,
-            0.5 * cases.at(Knowledge::kExecuteAndUpdate).result.gp_cost);
+  EXPECT_EQ(cases.at(sdf::Knowledge::kPrediction).result.colliding_states, 0);
+  EXPECT_LT(cases.at(sdf::Knowledge::kPrediction).result.gp_cost,
+            0.5 * cases.at(sdf::Knowledge::kExecuteAndUpdate).result.gp_cost);
 }
 
 // The WAM at rest, straight up, with its shoulder sphere of 0.15 m in the origin.
@@ -102,7 +104,7 @@ class TrueClearanceTest : public ::testing::Test {
   }
 
   OpenLoopExperiment experiment_ = MakeOpenLoopExperiment("wam_single_pillar");
-  const RobotModel robot_ = RobotModel::Load(kModels, "wam", Pose());
+  const robot::RobotModel robot_ = robot::RobotModel::Load(kModels, "wam", Pose());
   Trajectory trajectory_;
 };
 
@@ -122,4 +124,4 @@ TEST_F(TrueClearanceTest, SeesWhatPassesBetweenTwoStates) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::bench

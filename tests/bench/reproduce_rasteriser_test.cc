@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "bench/reproduce/open_loop_experiment.h"
-#include "bench/reproduce/published_maps.h"
-#include "bench/reproduce/published_rasteriser.h"
+#include "sidestep/bench/reproduce/open_loop_experiment.h"
+#include "sidestep/bench/reproduce/published_maps.h"
+#include "sidestep/bench/reproduce/published_rasteriser.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 
 // For the messages of failed expectations.
 std::ostream& operator<<(std::ostream& stream, const CellRange& cells) {
@@ -97,7 +97,8 @@ TEST(PublishedMaps, FillAsManyCellsAsTheAuthorsDo) {
        {CountCase{"wam_single_pillar", 4515, 5495}, CountCase{"panda_hsr", 14322, 20367}}) {
     OpenLoopExperiment experiment = MakeOpenLoopExperiment(test.experiment);
     experiment.speeds_m_s.clear();  // no fields
-    const PublishedMaps maps(experiment, BoxAlignment::kOneCellLow, DistanceConvention::kBwdist, 1);
+    const PublishedMaps maps(experiment, BoxAlignment::kOneCellLow,
+                             sdf::DistanceConvention::kBwdist, 1);
     EXPECT_EQ(maps.static_occupancy().CountFilled(), test.static_cells) << test.experiment;
     EXPECT_EQ(maps.OccupancyAt(1.0, 0).CountFilled(), test.all_cells) << test.experiment;
   }
@@ -106,8 +107,8 @@ TEST(PublishedMaps, FillAsManyCellsAsTheAuthorsDo) {
 TEST(PublishedMaps, HoldTheAuthorsDistancesToTheBit) {
   OpenLoopExperiment wam = MakeOpenLoopExperiment("wam_single_pillar");
   wam.speeds_m_s = {0.1};
-  const PublishedMaps maps(wam, BoxAlignment::kOneCellLow, DistanceConvention::kBwdist, 1);
-  const DistanceField& field = *maps.FieldsAt(0.1)[0];
+  const PublishedMaps maps(wam, BoxAlignment::kOneCellLow, sdf::DistanceConvention::kBwdist, 1);
+  const sdf::DistanceField& field = *maps.FieldsAt(0.1)[0];
   struct Value {
     int i, j, k;
     double distance_m;  // a float
@@ -124,4 +125,4 @@ TEST(PublishedMaps, HoldTheAuthorsDistancesToTheBit) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::bench

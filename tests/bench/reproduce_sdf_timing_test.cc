@@ -8,12 +8,12 @@
 #include <string>
 #include <utility>
 
-#include "bench/reproduce/field_scene.h"
-#include "bench/reproduce/field_timer.h"
-#include "bench/reproduce/sdf_timing.h"
-#include "scenarios/scenario.h"
+#include "sidestep/bench/reproduce/field_scene.h"
+#include "sidestep/bench/reproduce/field_timer.h"
+#include "sidestep/bench/reproduce/sdf_timing.h"
+#include "sidestep/scenarios/scenario.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 constexpr EpisodeTime kFirst(0.2), kSecond(0.6);
@@ -41,7 +41,7 @@ TEST_P(FieldScenes, MoveAsPublished) {
   for (const FieldScene::MovingBox& box : scene.moving_boxes) {
     const Eigen::Vector3d p_m = box.at_start.center_m + 1.5 * box.velocity_m_s;
     double nearest_m = 1e9;
-    for (const MovingField& object : timer.objects()) {
+    for (const sdf::MovingField& object : timer.objects()) {
       const Eigen::Vector3d p_WO = object.X_WO(EpisodeTime(1.5)).translation();
       nearest_m = std::min(nearest_m, (p_WO - p_m).cwiseAbs().maxCoeff());
     }
@@ -52,7 +52,8 @@ TEST_P(FieldScenes, MoveAsPublished) {
 
 TEST_P(FieldScenes, AreTheScenariosOfTheirNames) {
   const FieldScene scene = MakeFieldScene(GetParam());
-  const Scenario scenario = LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/" + GetParam() + ".yaml");
+  const scenarios::Scenario scenario =
+      scenarios::LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/" + GetParam() + ".yaml");
   EXPECT_EQ(scenario.robot, "");
   EXPECT_EQ(scenario.grid, PublishedTimingGrid(96));
   ASSERT_EQ(scenario.static_boxes.size(), scene.static_boxes.size());
@@ -63,7 +64,7 @@ TEST_P(FieldScenes, AreTheScenariosOfTheirNames) {
   ASSERT_EQ(scenario.moving_obstacles.size(), scene.moving_boxes.size());
   for (std::size_t i = 0; i < scene.moving_boxes.size(); ++i) {
     const FieldScene::MovingBox& box = scene.moving_boxes[i];
-    const MovingObstacle& obstacle = scenario.moving_obstacles[i];
+    const scenarios::MovingObstacle& obstacle = scenario.moving_obstacles[i];
     EXPECT_EQ(std::get<Box>(obstacle.shape).size_m, box.at_start.size_m) << i;
     for (const double t_s : {0.0, 1.3, 2.9}) {
       const Eigen::Vector3d p_WO =
@@ -122,4 +123,4 @@ TEST(SdfTiming, MakesARowOfEachSize) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::bench

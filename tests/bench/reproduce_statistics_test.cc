@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "bench/reproduce/open_loop_outcomes.h"
-#include "bench/reproduce/open_loop_statistics.h"
-#include "bench/reproduce/open_loop_statistics_text.h"
+#include "sidestep/bench/reproduce/open_loop_outcomes.h"
+#include "sidestep/bench/reproduce/open_loop_statistics.h"
+#include "sidestep/bench/reproduce/open_loop_statistics_text.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 using Fields = std::vector<std::optional<double>>;
@@ -44,7 +44,7 @@ TEST(OpenLoopStatistics, CountFreeRowsPooledAndBySpeed) {
   const OpenLoopStatistics statistics = Compute(Sample());
   EXPECT_EQ(statistics.num_rows, 6);
   ASSERT_EQ(statistics.pooled.size(), 2u);
-  EXPECT_EQ(statistics.pooled[0].knowledge, Knowledge::kStatic);
+  EXPECT_EQ(statistics.pooled[0].knowledge, sdf::Knowledge::kStatic);
   EXPECT_EQ(statistics.pooled[0].num_free, 2);
   EXPECT_EQ(statistics.pooled[1].num_free, 3);
   EXPECT_DOUBLE_EQ(statistics.pooled[1].mean_gp_cost, 55.0 / 6);
@@ -60,7 +60,7 @@ TEST(OpenLoopStatistics, CompareRowsOfTheSameStartGoalAndSpeed) {
   const OpenLoopStatistics statistics = Compute(Sample());
   ASSERT_EQ(statistics.comparisons.size(), 1u);
   const KnowledgeComparison& comparison = statistics.comparisons[0];
-  EXPECT_EQ(comparison.first, Knowledge::kFullKnowledge) << "the one that knows more is first";
+  EXPECT_EQ(comparison.first, sdf::Knowledge::kFullKnowledge) << "the one that knows more is first";
   EXPECT_EQ(comparison.only_first_free, 2);
   EXPECT_EQ(comparison.only_second_free, 1);
   EXPECT_DOUBLE_EQ(comparison.rate_difference, 1.0 / 6);
@@ -131,4 +131,4 @@ TEST(ReadOutcomes, RefusesATableWithoutPairOrSpeed) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -7,13 +7,13 @@
 #include <fstream>
 #include <string>
 
-#include "bench/reproduce/csv_table.h"
-#include "bench/reproduce/parallel.h"
-#include "bench/reproduce/published_table.h"
-#include "core/input_error.h"
+#include "sidestep/bench/reproduce/csv_table.h"
+#include "sidestep/bench/reproduce/parallel.h"
+#include "sidestep/bench/reproduce/published_table.h"
+#include "sidestep/core/input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 std::string WriteTable(const TemporaryFolder& folder, const std::string& text) {
@@ -131,4 +131,4 @@ TEST(RunTasks, CallsEachTaskOnceAndPassesAnExceptionOn) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,23 +1,25 @@
-#include "bench/resolve.h"
+#include "sidestep/bench/resolve.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/input_error.h"
+#include "sidestep/core/input_error.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 const std::string kSource = SIDESTEP_SOURCE_DIR;
 
-Scenario Walkway() { return LoadScenario(kSource + "/scenarios/hsr_walkway.yaml"); }
-
-RobotModel RobotOf(const Scenario& scenario) {
-  return RobotModel::Load(kSource + "/models", scenario.robot, scenario.X_WB);
+scenarios::Scenario Walkway() {
+  return scenarios::LoadScenario(kSource + "/scenarios/hsr_walkway.yaml");
 }
 
-std::string Complaint(Scenario scenario) {
-  const RobotModel robot = RobotOf(scenario);
+robot::RobotModel RobotOf(const scenarios::Scenario& scenario) {
+  return robot::RobotModel::Load(kSource + "/models", scenario.robot, scenario.X_WB);
+}
+
+std::string Complaint(scenarios::Scenario scenario) {
+  const robot::RobotModel robot = RobotOf(scenario);
   try {
     ResolveTask(scenario, robot);
   } catch (const InputError& error) {
@@ -27,8 +29,8 @@ std::string Complaint(Scenario scenario) {
 }
 
 TEST(ResolveTask, LooksUpNamedConfigurations) {
-  Scenario scenario = Walkway();
-  const RobotModel robot = RobotOf(scenario);
+  scenarios::Scenario scenario = Walkway();
+  const robot::RobotModel robot = RobotOf(scenario);
   ResolveTask(scenario, robot);
   Eigen::VectorXd right_ready(7), table_forward(7);
   right_ready << -1.57, -0.785, 0, -2.356, 0, 1.57, 0.785;
@@ -39,14 +41,14 @@ TEST(ResolveTask, LooksUpNamedConfigurations) {
 
 TEST(ResolveTask, LetsTheRobotStandOnItsMount) {
   // The Panda's lowest sphere reaches into the table below it; without a mount that is an error.
-  Scenario scenario = Walkway();
+  scenarios::Scenario scenario = Walkway();
   EXPECT_EQ(Complaint(scenario), "was accepted");
   scenario.mount = "";
   EXPECT_THAT(Complaint(scenario), ::testing::HasSubstr("inside 'near_table'"));
 }
 
 TEST(ResolveTask, RefusesAnUnknownNameAndListsTheKnownOnes) {
-  Scenario scenario = Walkway();
+  scenarios::Scenario scenario = Walkway();
   scenario.goal_name = "table_fwd";
   EXPECT_THAT(
       Complaint(scenario),
@@ -56,7 +58,7 @@ TEST(ResolveTask, RefusesAnUnknownNameAndListsTheKnownOnes) {
 }
 
 TEST(ResolveTask, RefusesTheWrongNumberOfJoints) {
-  Scenario scenario = Walkway();
+  scenarios::Scenario scenario = Walkway();
   scenario.start_name = "";
   scenario.q_start = Eigen::VectorXd::Zero(6);
   EXPECT_THAT(Complaint(scenario),
@@ -64,7 +66,7 @@ TEST(ResolveTask, RefusesTheWrongNumberOfJoints) {
 }
 
 TEST(ResolveTask, RefusesAJointOutsideItsLimits) {
-  Scenario scenario = Walkway();
+  scenarios::Scenario scenario = Walkway();
   scenario.goal_name = "";
   scenario.q_goal = Eigen::VectorXd::Zero(7);  // a Panda's joint 4 stays below -0.0698
   EXPECT_THAT(Complaint(scenario), ::testing::HasSubstr("task.goal: "));
@@ -73,11 +75,11 @@ TEST(ResolveTask, RefusesAJointOutsideItsLimits) {
 }
 
 TEST(ResolveTask, RefusesAStartInsideAnObstacle) {
-  Scenario scenario = Walkway();
-  std::get<LinearMotion>(scenario.moving_obstacles[0].motion).start_m = {0, -0.3, 0.9};
+  scenarios::Scenario scenario = Walkway();
+  std::get<scenarios::LinearMotion>(scenario.moving_obstacles[0].motion).start_m = {0, -0.3, 0.9};
   EXPECT_THAT(Complaint(scenario), ::testing::AllOf(::testing::HasSubstr("task.start: the robot's"),
                                                     ::testing::EndsWith("inside 'hsr'")));
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,4 +1,4 @@
-#include "bench/result_file.h"
+#include "sidestep/bench/result_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,11 +8,11 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "bench/metrics/registry.h"
-#include "core/input_error.h"
+#include "sidestep/bench/metrics/registry.h"
+#include "sidestep/core/input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 EpisodeResult SomeResult() {
@@ -25,7 +25,9 @@ EpisodeResult SomeResult() {
   return result;
 }
 
-Scenario SomeScenario() { return LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/hsr_walkway.yaml"); }
+scenarios::Scenario SomeScenario() {
+  return scenarios::LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/hsr_walkway.yaml");
+}
 
 class ResultFile : public ::testing::Test {
  protected:
@@ -87,4 +89,4 @@ TEST_F(ResultFile, LeavesNothingBehindWhereItCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -6,11 +6,11 @@
 #include <limits>
 #include <vector>
 
-#include "bench/statistics/proportions.h"
-#include "bench/statistics/resampling.h"
-#include "bench/statistics/signed_rank.h"
+#include "sidestep/bench/statistics/proportions.h"
+#include "sidestep/bench/statistics/resampling.h"
+#include "sidestep/bench/statistics/signed_rank.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 TEST(WilsonInterval, GivesNewcombesFigures) {
@@ -110,4 +110,4 @@ TEST(Bootstrap, GivesTheNormalIntervalOfAMeanOfManyClusters) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::bench

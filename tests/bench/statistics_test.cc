@@ -1,10 +1,10 @@
-#include "bench/statistics.h"
+#include "sidestep/bench/statistics.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 TEST(Quantile, InterpolatesBetweenOrderStatistics) {
@@ -22,4 +22,4 @@ TEST(Quantile, OfOneValueIsThatValue) { EXPECT_EQ(Quantile({4.5}, 0.95), 4.5); }
 TEST(Quantile, OfNothingIsNotANumber) { EXPECT_TRUE(std::isnan(Quantile({}, 0.5))); }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,4 +1,4 @@
-#include "bench/study_log.h"
+#include "sidestep/bench/study_log.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,10 +8,10 @@
 #include <fstream>
 #include <string>
 
-#include "core/input_error.h"
+#include "sidestep/core/input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 using ::testing::HasSubstr;
@@ -96,4 +96,4 @@ TEST_F(StudyLogTest, SaysWhereItCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -1,4 +1,4 @@
-#include "bench/study.h"
+#include "sidestep/bench/study.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,20 +8,20 @@
 #include <string>
 #include <vector>
 
-#include "bench/free_path_search.h"
-#include "bench/resolve.h"
+#include "sidestep/bench/free_path_search.h"
+#include "sidestep/bench/resolve.h"
 
-namespace sidestep {
+namespace sidestep::bench {
 namespace {
 
 using ::testing::HasSubstr;
 
-Scenario Load(const std::string& name, const Settings& settings = {}) {
-  return LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/" + name + ".yaml", settings);
+scenarios::Scenario Load(const std::string& name, const scenarios::Settings& settings = {}) {
+  return scenarios::LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/" + name + ".yaml", settings);
 }
 
-RobotModel RobotOf(const Scenario& scenario) {
-  return RobotModel::Load(SIDESTEP_SOURCE_DIR "/models", scenario.robot, scenario.X_WB);
+robot::RobotModel RobotOf(const scenarios::Scenario& scenario) {
+  return robot::RobotModel::Load(SIDESTEP_SOURCE_DIR "/models", scenario.robot, scenario.X_WB);
 }
 
 StudyRow Row(const std::string& behaviour, const std::string& predictor,
@@ -61,8 +61,9 @@ TEST(StudyCsv, HoldsEveryRowAlsoThoseThatFailed) {
 }
 
 TEST(StudyEpisode, ThatThrowsIsARowThatSaysWhy) {
-  const Scenario scenario = Load("hsr_walkway");
-  const WorldFactory broken = [](const Scenario&, const RobotModel&) -> EpisodeWorld {
+  const scenarios::Scenario scenario = Load("hsr_walkway");
+  const WorldFactory broken = [](const scenarios::Scenario&,
+                                 const robot::RobotModel&) -> EpisodeWorld {
     throw std::runtime_error("no world");
   };
   const StudyRow row = RunStudyEpisode(scenario, RobotOf(scenario), broken, {{"seed", "1"}});
@@ -72,15 +73,15 @@ TEST(StudyEpisode, ThatThrowsIsARowThatSaysWhy) {
 }
 
 TEST(VaryObstacles, IsAFunctionOfTheSeedAndTheSameForAllObstacles) {
-  const Scenario plain = Load("walkway_behaviours", {{"behaviour", "crossing"}});
+  const scenarios::Scenario plain = Load("walkway_behaviours", {{"behaviour", "crossing"}});
   double last_speed = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    Scenario varied = plain, again = plain;
+    scenarios::Scenario varied = plain, again = plain;
     VaryObstacles(varied, seed);
     VaryObstacles(again, seed);
-    EXPECT_EQ(ToYaml(varied), ToYaml(again));
-    const auto& hsr = std::get<LinearMotion>(varied.moving_obstacles[0].motion);
-    const auto& trolley = std::get<LinearMotion>(varied.moving_obstacles[1].motion);
+    EXPECT_EQ(scenarios::ToYaml(varied), scenarios::ToYaml(again));
+    const auto& hsr = std::get<scenarios::LinearMotion>(varied.moving_obstacles[0].motion);
+    const auto& trolley = std::get<scenarios::LinearMotion>(varied.moving_obstacles[1].motion);
     EXPECT_NE(hsr.speed_m_s, last_speed);
     EXPECT_GE(hsr.speed_m_s, 0.75 * 1.4);
     EXPECT_LE(hsr.speed_m_s, 1.3 * 1.4);
@@ -93,8 +94,8 @@ TEST(VaryObstacles, IsAFunctionOfTheSeedAndTheSameForAllObstacles) {
 }
 
 TEST(FreePathSearch, FindsTheMotionThatFullKnowledgeFinds) {
-  Scenario scenario = Load("hsr_walkway");
-  const RobotModel robot = RobotOf(scenario);
+  scenarios::Scenario scenario = Load("hsr_walkway");
+  const robot::RobotModel robot = RobotOf(scenario);
   ResolveTask(scenario, robot);
   const FreePath path = SearchFreePath(scenario, robot, 3, 1);
   EXPECT_TRUE(path.found);
@@ -105,10 +106,10 @@ TEST(FreePathSearch, FindsTheMotionThatFullKnowledgeFinds) {
 }
 
 TEST(FreePathSearch, FindsNoneToAGoalOnWhichSomethingStands) {
-  Scenario scenario = Load("hsr_walkway");
-  const RobotModel robot = RobotOf(scenario);
+  scenarios::Scenario scenario = Load("hsr_walkway");
+  const robot::RobotModel robot = RobotOf(scenario);
   ResolveTask(scenario, robot);
-  auto& hsr = std::get<LinearMotion>(scenario.moving_obstacles[0].motion);
+  auto& hsr = std::get<scenarios::LinearMotion>(scenario.moving_obstacles[0].motion);
   hsr.start_m.x() = 0.7;  // where the hand shall be
   hsr.stop_at_s = 2 / hsr.speed_m_s;
   const FreePath path = SearchFreePath(scenario, robot, 2, 1);
@@ -118,4 +119,4 @@ TEST(FreePathSearch, FindsNoneToAGoalOnWhichSomethingStands) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::bench

@@ -6,20 +6,20 @@
 #include <fstream>
 #include <string>
 
-#include "cli/command.h"
-#include "core/input_error.h"
-#include "core/recording.h"
+#include "sidestep/cli/command.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/record/recording_file.h"
 #include "tests/render/sample_recording.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::cli {
 namespace {
 
 using ::testing::HasSubstr;
 
 class RenderCommand : public ::testing::Test {
  protected:
-  void SetUp() override { WriteRecording(MakeSampleRecording({}), trace_); }
+  void SetUp() override { record::WriteRecording(render::MakeSampleRecording({}), trace_); }
   void TearDown() override { unsetenv("MUJOCO_GL"); }
   std::string Path(const std::string& name) const { return (folder_.path() / name).string(); }
 
@@ -87,4 +87,4 @@ TEST_F(RenderCommand, RefusesToDrawWhereTheEnvironmentForbidsIt) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::cli

@@ -1,4 +1,4 @@
-#include "control/tracker.h"
+#include "sidestep/control/tracker.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace sidestep {
+namespace sidestep::control {
 namespace {
 
 using Eigen::VectorXd;
@@ -76,8 +76,8 @@ std::ostream& operator<<(std::ostream& stream, const LimitsCase& c) { return str
 
 class TrackerUnderLimits : public ::testing::TestWithParam<LimitsCase> {
  protected:
-  const RobotModel robot_ =
-      RobotModel::Load(SIDESTEP_SOURCE_DIR "/models", GetParam().robot, Pose());
+  const robot::RobotModel robot_ =
+      robot::RobotModel::Load(SIDESTEP_SOURCE_DIR "/models", GetParam().robot, Pose());
   const TrackerLimits limits_ =
       TrackerLimits::Of(robot_, GetParam().v_scale, GetParam().a_scale, GetParam().jerk_scale);
   const VectorXd home_ = robot_.configurations().begin()->second;
@@ -162,7 +162,8 @@ INSTANTIATE_TEST_SUITE_P(Limits, TrackerUnderLimits,
 // How far the command is from a plan within the limits, whose acceleration bends and jumps a little
 // at its support states.
 TEST(JerkLimitedTracker, FollowsAPlanWithinTheLimitsToTenMicroradians) {
-  const RobotModel panda = RobotModel::Load(SIDESTEP_SOURCE_DIR "/models", "panda", Pose());
+  const robot::RobotModel panda =
+      robot::RobotModel::Load(SIDESTEP_SOURCE_DIR "/models", "panda", Pose());
   const int K = 31, n = panda.num_joints();
   Trajectory plan;
   plan.t_s = VectorXd::LinSpaced(K, 0, 3);
@@ -305,4 +306,4 @@ TEST(JerkLimitedTracker, RefusesNonsense) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::control

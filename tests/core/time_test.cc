@@ -1,4 +1,4 @@
-#include "core/time.h"
+#include "sidestep/core/time.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/trajectory.h"
+#include "sidestep/core/trajectory.h"
 
 #include <gtest/gtest.h>
 

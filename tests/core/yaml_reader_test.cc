@@ -1,4 +1,4 @@
-#include "core/yaml_reader.h"
+#include "sidestep/core/yaml_reader.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/input_error.h"
+#include "sidestep/core/input_error.h"
 #include "tests/support/temporary_folder.h"
 
 namespace sidestep {

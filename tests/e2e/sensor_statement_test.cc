@@ -10,18 +10,18 @@
 #include <map>
 #include <memory>
 
-#include "bench/episode.h"
-#include "core/input_error.h"
-#include "sim/sensors.h"
-#include "sim/simulation.h"
+#include "sidestep/bench/episode.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/sim/sensors.h"
+#include "sidestep/sim/simulation.h"
 #include "tests/sim/two_link.h"
 
 namespace sidestep {
 namespace {
 
 // An arm that slowly swings, and a sensor; about ten seconds.
-Scenario SwingingScenario() {
-  Scenario scenario = TwoLinkScenario();
+scenarios::Scenario SwingingScenario() {
+  scenarios::Scenario scenario = sim::TwoLinkScenario();
   scenario.q_start = Eigen::Vector2d(-1, 0);
   scenario.q_goal = Eigen::Vector2d(1, 0);
   scenario.horizon_s = 10;
@@ -38,18 +38,19 @@ Scenario SwingingScenario() {
   return scenario;
 }
 
-Recording Record(const Scenario& scenario) {
-  const auto make_world = [](const Scenario& of, const RobotModel& robot) {
-    return MakeEpisodeWorld(std::make_shared<Simulation>(of, robot, kTestModels));
+record::Recording Record(const scenarios::Scenario& scenario) {
+  const auto make_world = [](const scenarios::Scenario& of, const robot::RobotModel& robot) {
+    return bench::MakeEpisodeWorld(std::make_shared<sim::Simulation>(of, robot, sim::kTestModels));
   };
-  return RunEpisode(scenario, TwoLink(scenario), make_world).recording;
+  return bench::RunEpisode(scenario, sim::TwoLink(scenario), make_world).recording;
 }
 
 // The grids that a trace tells of, one a scan.
-std::vector<std::vector<std::uint8_t>> GridsOf(const Recording& recording, const GridSpec& grid) {
+std::vector<std::vector<std::uint8_t>> GridsOf(const record::Recording& recording,
+                                               const GridSpec& grid) {
   std::vector<std::vector<std::uint8_t>> grids;
   std::vector<std::uint8_t> cells(grid.num_cells(), 0);
-  for (const ObservationRecord& observation : recording.observations) {
+  for (const record::ObservationRecord& observation : recording.observations) {
     for (const std::int64_t cell : observation.changed_cells) {
       cells[static_cast<std::size_t>(cell)] ^= 1;
     }
@@ -89,16 +90,16 @@ void ExpectNormalCounts(const std::map<int, int>& counts, double cell_m, double 
 }
 
 TEST(SensorDelivery, HasItsRateLatencyJitterAndDropout) {
-  Scenario scenario = SwingingScenario();
+  scenarios::Scenario scenario = SwingingScenario();
   scenario.sensor.rate_hz = 40;
   scenario.sensor.latency_s = 0.05;
   scenario.sensor.jitter_s = 0.02;  // less than a period: none overtakes another
   scenario.sensor.dropout = 0.2;
-  const Recording recording = Record(scenario);
+  const record::Recording recording = Record(scenario);
   const double end_s = recording.control.back().t.seconds();
   const double num_captures = std::floor((end_s - 0.07) * 40) + 1;
   std::vector<double> delays;
-  for (const ObservationRecord& observation : recording.observations) {
+  for (const record::ObservationRecord& observation : recording.observations) {
     const double k = observation.t.seconds() * 40;
     EXPECT_NEAR(k, std::round(k), 1e-9);
     const double delay = observation.t_arrival.seconds() - observation.t.seconds();
@@ -113,11 +114,11 @@ TEST(SensorDelivery, HasItsRateLatencyJitterAndDropout) {
 }
 
 TEST(SensorDelivery, ThrowsAwayScansThatNewerOnesOvertook) {
-  Scenario scenario = SwingingScenario();
+  scenarios::Scenario scenario = SwingingScenario();
   scenario.sensor.rate_hz = 100;
   scenario.sensor.jitter_s = 0.05;
-  const Recording recording = Record(scenario);
-  const std::vector<ObservationRecord>& observations = recording.observations;
+  const record::Recording recording = Record(scenario);
+  const std::vector<record::ObservationRecord>& observations = recording.observations;
   ASSERT_GT(observations.size(), 100u);
   for (std::size_t i = 1; i < observations.size(); ++i) {
     EXPECT_LT(observations[i - 1].t, observations[i].t);
@@ -128,8 +129,8 @@ TEST(SensorDelivery, ThrowsAwayScansThatNewerOnesOvertook) {
 }
 
 TEST(SensorDelivery, WithoutImperfectionsIsPromptAndComplete) {
-  Scenario scenario = SwingingScenario();
-  const Recording recording = Record(scenario);
+  scenarios::Scenario scenario = SwingingScenario();
+  const record::Recording recording = Record(scenario);
   for (std::size_t k = 0; k < recording.observations.size(); ++k) {
     EXPECT_NEAR(recording.observations[k].t.seconds(), static_cast<double>(k) / 30, 1e-3);
     EXPECT_EQ(recording.observations[k].t, recording.observations[k].t_arrival);
@@ -137,10 +138,10 @@ TEST(SensorDelivery, WithoutImperfectionsIsPromptAndComplete) {
 }
 
 TEST(OccupancyNoise, FlipsCellsAsOftenAsItSays) {
-  Scenario scenario = SwingingScenario();
+  scenarios::Scenario scenario = SwingingScenario();
   scenario.static_boxes = {{"shelf", Pose::Translation({0, 0.7, 0.4}), {0.4, 0.2, 0.3}}};
   const std::vector<std::uint8_t> truth = GridsOf(Record(scenario), scenario.grid).front();
-  scenario.sensor.noise = OccupancyNoise{.false_filled = 0.002, .false_free = 0.1};
+  scenario.sensor.noise = scenarios::OccupancyNoise{.false_filled = 0.002, .false_free = 0.1};
   const auto grids = GridsOf(Record(scenario), scenario.grid);
   double free_cells = 0, false_filled = 0, filled_cells = 0, false_free = 0;
   for (const std::vector<std::uint8_t>& cells : grids) {
@@ -156,12 +157,12 @@ TEST(OccupancyNoise, FlipsCellsAsOftenAsItSays) {
 }
 
 TEST(OccupancyNoise, DisplacesPointsByItsDeviationAlongEachAxis) {
-  Scenario scenario = SwingingScenario();
+  scenarios::Scenario scenario = SwingingScenario();
   scenario.sensor.rate_hz = 200;
   const Eigen::Vector3d p_WCell = scenario.grid.Center(20, 40, 30);
   scenario.static_boxes = {{"grain", Pose::Translation(p_WCell), Eigen::Vector3d::Constant(0.02)}};
   constexpr double kDeviation = 0.03;
-  scenario.sensor.noise = OccupancyNoise{.position_noise_m = kDeviation};
+  scenario.sensor.noise = scenarios::OccupancyNoise{.position_noise_m = kDeviation};
   std::map<int, int> counts[3];
   for (const std::vector<std::uint8_t>& cells : GridsOf(Record(scenario), scenario.grid)) {
     const auto filled = std::find(cells.begin(), cells.end(), 1);
@@ -178,14 +179,14 @@ TEST(OccupancyNoise, DisplacesPointsByItsDeviationAlongEachAxis) {
 }
 
 TEST(DepthCamera, HasTheNoiseThatItSaysAtItsDepth) {
-  Scenario scenario = SwingingScenario();
+  scenarios::Scenario scenario = SwingingScenario();
   scenario.sensor.name = "depth_camera";
   scenario.sensor.rate_hz = 200;
   // One ray along x through the middles of cells, onto a wall in the middle of cell 40.
   const Eigen::Vector3d p_WWall = scenario.grid.Center(40, 45, 35);
   scenario.static_boxes = {
       {"wall", Pose::Translation(p_WWall + Eigen::Vector3d(0.1, 0, 0)), {0.2, 0.3, 0.3}}};
-  CameraSettings camera;
+  scenarios::CameraSettings camera;
   camera.position_m = p_WWall - Eigen::Vector3d(2, 0, 0);
   camera.look_at_m = p_WWall;
   camera.width = camera.height = 1;
@@ -193,7 +194,7 @@ TEST(DepthCamera, HasTheNoiseThatItSaysAtItsDepth) {
   camera.pixel_dropout = 0.25;
   camera.unseen = "free";
   scenario.sensor.camera = camera;
-  const Recording recording = Record(scenario);
+  const record::Recording recording = Record(scenario);
   std::map<int, int> counts;
   int measured = 0;
   for (const std::vector<std::uint8_t>& cells : GridsOf(recording, scenario.grid)) {
@@ -210,16 +211,17 @@ TEST(DepthCamera, HasTheNoiseThatItSaysAtItsDepth) {
 }
 
 TEST(DepthCamera, FindsTheSpaceBeforeTheRobotFreeAgainWhereSomethingHasPassed) {
-  Scenario scenario = SwingingScenario();
-  scenario.moving_obstacles = {Passing("cart", Sphere{0.15}, {-0.7, -0.8, 0.3}, {1, 0, 0}, 0.5)};
+  scenarios::Scenario scenario = SwingingScenario();
+  scenario.moving_obstacles = {
+      sim::Passing("cart", Sphere{0.15}, {-0.7, -0.8, 0.3}, {1, 0, 0}, 0.5)};
   scenario.sensor.name = "depth_camera";
-  CameraSettings camera;  // looks at the arm's side; the ball goes by before it
+  scenarios::CameraSettings camera;  // looks at the arm's side; the ball goes by before it
   camera.position_m = {0.4, -2.5, 0.3};
   camera.look_at_m = {0.4, 0, 0.3};
   camera.range_m = 4;
   camera.unseen = "remembered";
   scenario.sensor.camera = camera;
-  const Recording recording = Record(scenario);
+  const record::Recording recording = Record(scenario);
   int most = 0, left = 0;
   for (const std::vector<std::uint8_t>& cells : GridsOf(recording, scenario.grid)) {
     left = static_cast<int>(std::count(cells.begin(), cells.end(), 1));
@@ -230,24 +232,24 @@ TEST(DepthCamera, FindsTheSpaceBeforeTheRobotFreeAgainWhereSomethingHasPassed) {
 }
 
 TEST(TagCamera, HasTheErrorsThatItsCovarianceSays) {
-  Scenario scenario = SwingingScenario();
+  scenarios::Scenario scenario = SwingingScenario();
   scenario.moving_obstacles = {
-      Passing("cart", Box{{0.3, 0.2, 0.2}}, {0.8, -0.9, 0.6}, {0, 1, 0}, 0.15)};
+      sim::Passing("cart", Box{{0.3, 0.2, 0.2}}, {0.8, -0.9, 0.6}, {0, 1, 0}, 0.15)};
   scenario.moving_obstacles[0].rpy_rad = {0.1, -0.2, 0.7};
   scenario.sensor.name = "tags";
   scenario.sensor.rate_hz = 50;
-  TagSettings tags;
+  scenarios::TagSettings tags;
   tags.position_m = {2.5, 0, 1.5};
   tags.across_noise = 0.003;
   tags.along_noise_per_m = 0.01;
   tags.rotation_noise_rad = 0.03;
   scenario.sensor.tags = tags;
-  const Recording recording = Record(scenario);
+  const record::Recording recording = Record(scenario);
 
   std::vector<double> squares, across, along;
-  for (const ObservationRecord& observation : recording.observations) {
+  for (const record::ObservationRecord& observation : recording.observations) {
     ASSERT_EQ(observation.objects.size(), 1u);
-    const SeenObject& seen = observation.objects[0];
+    const record::SeenObject& seen = observation.objects[0];
     EXPECT_EQ(seen.id, "cart");
     const Pose X_WO = PoseAt(scenario.moving_obstacles[0], observation.t);
     Eigen::Matrix<double, 6, 1> error;
@@ -267,14 +269,15 @@ TEST(TagCamera, HasTheErrorsThatItsCovarianceSays) {
 }
 
 TEST(TagCamera, DoesNotFindWhatIsFarAwayOrBehindSomething) {
-  Scenario scenario = SwingingScenario();
+  scenarios::Scenario scenario = SwingingScenario();
   scenario.static_boxes = {{"screen", Pose::Translation({1.2, 0.4, 0.6}), {0.02, 0.4, 0.6}}};
-  scenario.moving_obstacles = {Passing("cart", Sphere{0.1}, {0.8, -0.9, 0.6}, {0, 1, 0}, 0.15)};
+  scenario.moving_obstacles = {
+      sim::Passing("cart", Sphere{0.1}, {0.8, -0.9, 0.6}, {0, 1, 0}, 0.15)};
   scenario.sensor.name = "tags";
-  scenario.sensor.tags = TagSettings{.position_m = {2, 0.4, 0.6}, .range_m = 1.5};
-  const Recording recording = Record(scenario);
+  scenario.sensor.tags = scenarios::TagSettings{.position_m = {2, 0.4, 0.6}, .range_m = 1.5};
+  const record::Recording recording = Record(scenario);
   int found = 0;
-  for (const ObservationRecord& observation : recording.observations) {
+  for (const record::ObservationRecord& observation : recording.observations) {
     const Eigen::Vector3d p = PoseAt(scenario.moving_obstacles[0], observation.t).translation();
     const double d = (p - scenario.sensor.tags->position_m).norm();
     // Where the line of sight crosses the screen.
@@ -290,18 +293,19 @@ TEST(TagCamera, DoesNotFindWhatIsFarAwayOrBehindSomething) {
 // Every registered sensor, with the settings that it needs.
 class EverySensor : public ::testing::TestWithParam<std::string> {
  protected:
-  static Scenario Scene() {
-    Scenario scenario = SwingingScenario();
+  static scenarios::Scenario Scene() {
+    scenarios::Scenario scenario = SwingingScenario();
     scenario.horizon_s = 2;
     scenario.static_boxes = {{"shelf", Pose::Translation({0, 0.7, 0.4}), {0.4, 0.2, 0.3}}};
     scenario.moving_obstacles = {
-        Passing("cart", Box{{0.3, 0.2, 0.2}}, {0.8, -0.9, 0.6}, {0, 1, 0}, 0.4)};
+        sim::Passing("cart", Box{{0.3, 0.2, 0.2}}, {0.8, -0.9, 0.6}, {0, 1, 0}, 0.4)};
     scenario.sensor.name = GetParam();
     scenario.sensor.latency_s = 0.03;
     scenario.sensor.dropout = 0.1;
-    if (GetParam() == "occupancy") scenario.sensor.noise = OccupancyNoise{0.001, 0.1, 0.01};
+    if (GetParam() == "occupancy")
+      scenario.sensor.noise = scenarios::OccupancyNoise{0.001, 0.1, 0.01};
     if (GetParam() == "depth_camera") {
-      CameraSettings camera;
+      scenarios::CameraSettings camera;
       camera.position_m = {2, 0, 1.5};
       camera.look_at_m = {0, 0, 0.4};
       camera.width = 40;
@@ -309,27 +313,28 @@ class EverySensor : public ::testing::TestWithParam<std::string> {
       camera.noise_per_m = 0.003;
       scenario.sensor.camera = camera;
     }
-    if (GetParam() == "tags") scenario.sensor.tags = TagSettings{.position_m = {2, 0, 1.5}};
+    if (GetParam() == "tags")
+      scenario.sensor.tags = scenarios::TagSettings{.position_m = {2, 0, 1.5}};
     return scenario;
   }
 };
 
-bool AreEqual(const Recording& a, const Recording& b) {
-  return std::equal(a.observations.begin(), a.observations.end(), b.observations.begin(),
-                    b.observations.end(), [](const auto& x, const auto& y) {
-                      const auto same = [](const SeenObject& s, const SeenObject& o) {
-                        return s.X_WO.translation() == o.X_WO.translation();
-                      };
-                      return x.t == y.t && x.t_arrival == y.t_arrival &&
-                             x.changed_cells == y.changed_cells &&
-                             std::equal(x.objects.begin(), x.objects.end(), y.objects.begin(),
-                                        y.objects.end(), same);
-                    });
+bool AreEqual(const record::Recording& a, const record::Recording& b) {
+  return std::equal(
+      a.observations.begin(), a.observations.end(), b.observations.begin(), b.observations.end(),
+      [](const auto& x, const auto& y) {
+        const auto same = [](const record::SeenObject& s, const record::SeenObject& o) {
+          return s.X_WO.translation() == o.X_WO.translation();
+        };
+        return x.t == y.t && x.t_arrival == y.t_arrival && x.changed_cells == y.changed_cells &&
+               std::equal(x.objects.begin(), x.objects.end(), y.objects.begin(), y.objects.end(),
+                          same);
+      });
 }
 
 TEST_P(EverySensor, SaysTheSameAgainForTheSameSeedAndOtherThingsForAnother) {
-  Scenario scenario = Scene();
-  const Recording first = Record(scenario);
+  scenarios::Scenario scenario = Scene();
+  const record::Recording first = Record(scenario);
   EXPECT_GT(first.observations.size(), 30u);
   EXPECT_TRUE(AreEqual(first, Record(scenario)));
   scenario.seed = 8;
@@ -337,10 +342,10 @@ TEST_P(EverySensor, SaysTheSameAgainForTheSameSeedAndOtherThingsForAnother) {
 }
 
 TEST_P(EverySensor, SaysTheSameInTwoEpisodesAtOnceAsAlone) {
-  Scenario scenario = Scene();
+  scenarios::Scenario scenario = Scene();
   scenario.horizon_s = 1;
   scenario.step_s = 0.1;
-  const Recording alone = Record(scenario);
+  const record::Recording alone = Record(scenario);
   auto one = std::async(std::launch::async, [&] { return Record(scenario); });
   auto other = std::async(std::launch::async, [&] { return Record(scenario); });
   EXPECT_TRUE(AreEqual(alone, one.get()));
@@ -350,32 +355,32 @@ TEST_P(EverySensor, SaysTheSameInTwoEpisodesAtOnceAsAlone) {
 TEST_P(EverySensor, ServesEveryKindOfKnowledge) {
   for (const char* const knowledge :
        {"static", "execute_and_update", "prediction", "full_knowledge"}) {
-    Scenario scenario = Scene();
+    scenarios::Scenario scenario = Scene();
     scenario.knowledge = knowledge;
     scenario.replan_rate_hz = 5;
-    const Recording recording = Record(scenario);
+    const record::Recording recording = Record(scenario);
     EXPECT_GT(recording.cycles.size(), 5u) << knowledge;
   }
 }
 
 TEST_P(EverySensor, RefusesTheSettingsOfAnother) {
-  Scenario scenario = Scene();
+  scenarios::Scenario scenario = Scene();
   scenario.sensor.line = 12;
-  scenario.sensor.noise = OccupancyNoise{};
-  scenario.sensor.camera = CameraSettings{};
-  scenario.sensor.tags = TagSettings{};
+  scenario.sensor.noise = scenarios::OccupancyNoise{};
+  scenario.sensor.camera = scenarios::CameraSettings{};
+  scenario.sensor.tags = scenarios::TagSettings{};
   EXPECT_THAT([&] { Record(scenario); },
               ::testing::ThrowsMessage<InputError>(::testing::MatchesRegex(
                   "two_link.yaml:12: sensor.(noise|camera|tags): is not for the sensor '" +
                   GetParam() + "'")));
 }
 
-INSTANTIATE_TEST_SUITE_P(Registered, EverySensor, ::testing::ValuesIn(SensorNames()),
+INSTANTIATE_TEST_SUITE_P(Registered, EverySensor, ::testing::ValuesIn(sim::SensorNames()),
                          [](const auto& test) { return test.param; });
 
 TEST(EverySensorThatNeedsSettings, SaysSo) {
   for (const char* const name : {"depth_camera", "tags"}) {
-    Scenario scenario = SwingingScenario();
+    scenarios::Scenario scenario = SwingingScenario();
     scenario.sensor.name = name;
     EXPECT_THROW(Record(scenario), InputError) << name;
   }

@@ -9,9 +9,10 @@
 #include <thread>
 #include <utility>
 
-#include "bench/episode.h"
-#include "bench/resolve.h"
-#include "sim/simulation.h"
+#include "sidestep/bench/episode.h"
+#include "sidestep/bench/resolve.h"
+#include "sidestep/record/recording_file.h"
+#include "sidestep/sim/simulation.h"
 #include "tests/support/temporary_folder.h"
 
 namespace sidestep {
@@ -20,29 +21,31 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Problem {
-  Scenario scenario;
-  RobotModel robot;
+  scenarios::Scenario scenario;
+  robot::RobotModel robot;
 };
 
 const std::string kModels = SIDESTEP_SOURCE_DIR "/models";
 
-Problem Load(const std::string& name, const Settings& settings) {
-  Scenario scenario = LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/" + name + ".yaml", settings);
-  RobotModel robot = RobotModel::Load(kModels, scenario.robot, scenario.X_WB);
-  ResolveTask(scenario, robot);
+Problem Load(const std::string& name, const scenarios::Settings& settings) {
+  scenarios::Scenario scenario =
+      scenarios::LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/" + name + ".yaml", settings);
+  robot::RobotModel robot = robot::RobotModel::Load(kModels, scenario.robot, scenario.X_WB);
+  bench::ResolveTask(scenario, robot);
   return {std::move(scenario), std::move(robot)};
 }
 
-EpisodeWorld MakeWorld(const Scenario& scenario, const RobotModel& robot) {
-  return MakeEpisodeWorld(std::make_shared<Simulation>(scenario, robot, kModels));
+bench::EpisodeWorld MakeWorld(const scenarios::Scenario& scenario, const robot::RobotModel& robot) {
+  return bench::MakeEpisodeWorld(std::make_shared<sim::Simulation>(scenario, robot, kModels));
 }
 
 // The bytes of an episode's trace.
 std::string Trace(const Problem& problem) {
-  const EpisodeResult result = RunEpisode(problem.scenario, problem.robot, &MakeWorld);
+  const bench::EpisodeResult result =
+      bench::RunEpisode(problem.scenario, problem.robot, &MakeWorld);
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "trace.h5";
-  WriteRecording(result.recording, file.string());
+  record::WriteRecording(result.recording, file.string());
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
 }

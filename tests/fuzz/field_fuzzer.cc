@@ -14,14 +14,14 @@
 #include <span>
 #include <vector>
 
-#include "sdf/composite_field.h"
-#include "sdf/dense_composite.h"
-#include "sdf/map/distance_transform.h"
-#include "sdf/map/fast_distance_transform.h"
-#include "sdf/map/fast_distance_transform_envelope.h"
-#include "sdf/map/object_field.h"
-#include "sdf/map/occupancy_from_scan.h"
-#include "sdf/tracking/segmentation.h"
+#include "sidestep/sdf/composite_field.h"
+#include "sidestep/sdf/dense_composite.h"
+#include "sidestep/sdf/map/distance_transform.h"
+#include "sidestep/sdf/map/fast_distance_transform.h"
+#include "sidestep/sdf/map/fast_distance_transform_envelope.h"
+#include "sidestep/sdf/map/object_field.h"
+#include "sidestep/sdf/map/occupancy_from_scan.h"
+#include "sidestep/sdf/tracking/segmentation.h"
 #include "tests/sdf/only_target.h"
 
 namespace sidestep {
@@ -91,8 +91,8 @@ OccupancyGrid ReadGrid(Input& input, int max_cells) {
   return ReadGrid(input, size);
 }
 
-DistanceConvention ReadConvention(Input& input) {
-  return input.ConsumeBool() ? DistanceConvention::kSurface : DistanceConvention::kBwdist;
+sdf::DistanceConvention ReadConvention(Input& input) {
+  return input.ConsumeBool() ? sdf::DistanceConvention::kSurface : sdf::DistanceConvention::kBwdist;
 }
 
 double ReadQuarters_m(Input& input, int low, int high) {
@@ -105,9 +105,10 @@ Eigen::Vector3d ReadPoint(Input& input, int reach) {  // in quarter cells
 
 // --- The transform -------------------------------------------------------------------------------
 
-std::vector<float> TransformByBruteForce(const OccupancyGrid& grid, DistanceConvention convention) {
+std::vector<float> TransformByBruteForce(const OccupancyGrid& grid,
+                                         sdf::DistanceConvention convention) {
   const auto square = [&](int offset) {
-    const int faces = convention == DistanceConvention::kSurface && offset != 0 ? 1 : 0;
+    const int faces = convention == sdf::DistanceConvention::kSurface && offset != 0 ? 1 : 0;
     return (2 * std::abs(offset) - faces) * (2 * std::abs(offset) - faces);
   };
   const int nx = grid.spec.size[0], ny = grid.spec.size[1];
@@ -123,7 +124,7 @@ std::vector<float> TransformByBruteForce(const OccupancyGrid& grid, DistanceConv
     }
     const float distance =
         nearest == std::numeric_limits<int>::max()
-            ? kNoSurfaceDistance_m
+            ? sdf::kNoSurfaceDistance_m
             : static_cast<float>(kCell_m / 2 * std::sqrt(static_cast<float>(nearest)));
     distance_m.push_back(filled != 0 ? -distance : distance);
   }
@@ -131,23 +132,24 @@ std::vector<float> TransformByBruteForce(const OccupancyGrid& grid, DistanceConv
 }
 
 void CheckTransform(Input& input) {
-  DistanceTransformOptions options;
+  sdf::DistanceTransformOptions options;
   options.convention = ReadConvention(input);
   if (input.ConsumeBool()) options.max_distance_m = kCell_m / 2 * Number(input, 1, 600);
   options.num_threads = Number(input, 0, 7) == 0 ? Number(input, 2, 5) : 1;
   options.min_lane_bits = 8 << Number(input, 0, 2);
   const OccupancyGrid grid = ReadGrid(input, Number(input, 0, 15) == 0 ? 12000 : 2500);
 
-  const SdfGrid simple = ComputeSignedDistance(grid, options.convention);
+  const sdf::SdfGrid simple = sdf::ComputeSignedDistance(grid, options.convention);
   if (grid.cells.size() <= 300) {
     Require(AreSame(simple.distance_m(), TransformByBruteForce(grid, options.convention)),
             "the simple transform differs from brute force");
   }
-  AlignedVector<float> expected = simple.distance_m();
+  sdf::AlignedVector<float> expected = simple.distance_m();
   const float limit = static_cast<float>(options.max_distance_m);
   for (float& distance : expected) distance = std::clamp(distance, -limit, limit);
 
-  static FastDistanceTransform transform;  // Its memory serves all grids, whatever came before.
+  static sdf::FastDistanceTransform
+      transform;  // Its memory serves all grids, whatever came before.
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     const OnlyTarget only(target);
     std::vector<float> actual(grid.cells.size(), std::nanf(""));
@@ -177,23 +179,23 @@ void CheckEnvelope(Input& input) {
 // --- Composites ----------------------------------------------------------------------------------
 
 struct Scene {
-  std::shared_ptr<const SdfGrid> static_W;
-  std::vector<MovingField> objects;
+  std::shared_ptr<const sdf::SdfGrid> static_W;
+  std::vector<sdf::MovingField> objects;
   double clamp_m = 0;
 };
 
 Scene ReadScene(Input& input, int max_objects, bool may_turn) {
   Scene scene;
   scene.clamp_m = kCell_m / 2 * Number(input, 1, 6);
-  const DistanceConvention convention = ReadConvention(input);
+  const sdf::DistanceConvention convention = ReadConvention(input);
   const double max_growth_m = ReadQuarters_m(input, 0, 4);
-  std::vector<std::shared_ptr<const SdfGrid>> shapes;
+  std::vector<std::shared_ptr<const sdf::SdfGrid>> shapes;
   for (int n = Number(input, 1, 2); n > 0; --n) {
-    shapes.push_back(std::make_shared<SdfGrid>(
-        MakeObjectField(ReadGrid(input, 30), scene.clamp_m + max_growth_m, convention)));
+    shapes.push_back(std::make_shared<sdf::SdfGrid>(
+        sdf::MakeObjectField(ReadGrid(input, 30), scene.clamp_m + max_growth_m, convention)));
   }
   for (int n = Number(input, 0, max_objects); n > 0; --n) {
-    MovingField& object = scene.objects.emplace_back();
+    sdf::MovingField& object = scene.objects.emplace_back();
     object.field_O = shapes[static_cast<std::size_t>(n) % shapes.size()];
     const Eigen::Vector3d p = ReadPoint(input, 200), v = ReadPoint(input, 8);
     const Eigen::Vector3d rpy_rad = may_turn ? ReadPoint(input, 200) : Eigen::Vector3d::Zero();
@@ -204,18 +206,18 @@ Scene ReadScene(Input& input, int max_objects, bool may_turn) {
     if (input.ConsumeBool()) object.growth_m = [=](EpisodeTime t) { return t.seconds() * 0.01; };
   }
   scene.static_W =
-      std::make_shared<SdfGrid>(ComputeSignedDistance(ReadGrid(input, 800), convention));
+      std::make_shared<sdf::SdfGrid>(sdf::ComputeSignedDistance(ReadGrid(input, 800), convention));
   return scene;
 }
 
 // By definition, without any shortcut.
-double LeastDistance_m(const SdfGrid& static_W, const std::vector<PlacedObject>& objects,
+double LeastDistance_m(const sdf::SdfGrid& static_W, const std::vector<sdf::PlacedObject>& objects,
                        double clamp_m, const Eigen::Vector3d& p_WQ) {
   double least_m = clamp_m;
-  const GridSample fixed = static_W.Sample(p_WQ);
+  const sdf::GridSample fixed = static_W.Sample(p_WQ);
   if (fixed.in_grid) least_m = std::min(least_m, fixed.distance_m);
-  for (const PlacedObject& object : objects) {
-    const GridSample sample = object.field_O->Sample(object.X_WO.Inverse() * p_WQ);
+  for (const sdf::PlacedObject& object : objects) {
+    const sdf::GridSample sample = object.field_O->Sample(object.X_WO.Inverse() * p_WQ);
     if (sample.in_grid) least_m = std::min(least_m, sample.distance_m - object.growth_m);
   }
   return least_m;
@@ -225,8 +227,8 @@ void CheckQueries(Input& input) {
   const EpisodeTime t(Number(input, 0, 40));
   const Eigen::Index num_points = Number(input, 0, 7) == 0 ? 140 : Number(input, 1, 20);
   const Scene scene = ReadScene(input, Number(input, 0, 3) == 0 ? 40 : 5, true);
-  std::vector<PlacedObject> at_t;
-  for (const MovingField& object : scene.objects) {
+  std::vector<sdf::PlacedObject> at_t;
+  for (const sdf::MovingField& object : scene.objects) {
     const double growth_m =
         object.growth_m ? std::clamp(object.growth_m(t), 0.0, object.max_growth_m) : 0;
     at_t.push_back({object.field_O.get(), {}, object.X_WO(t), growth_m});
@@ -238,17 +240,17 @@ void CheckQueries(Input& input) {
     if (input.ConsumeBool()) p_WQ.col(s) *= 0.99;  // off the centres and borders
     least_m(s) = LeastDistance_m(*scene.static_W, at_t, scene.clamp_m, p_WQ.col(s));
   }
-  const CompositeField field(scene.static_W, scene.objects, scene.clamp_m);
-  const PlacedComposite placed = field.At(t);
+  const sdf::CompositeField field(scene.static_W, scene.objects, scene.clamp_m);
+  const sdf::PlacedComposite placed = field.At(t);
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     const OnlyTarget only(target);
-    DistanceSamples batch;
+    sdf::DistanceSamples batch;
     field.SampleMany(p_WQ, t, batch);
-    SampleColumns columns;
-    placed.SampleMany(PointColumns(p_WQ.transpose()), columns);
+    sdf::SampleColumns columns;
+    placed.SampleMany(sdf::PointColumns(p_WQ.transpose()), columns);
     int num_outside = 0;
     for (Eigen::Index s = 0; s < num_points; ++s) {
-      const DistanceSample one = placed.Sample(p_WQ.col(s));
+      const sdf::DistanceSample one = placed.Sample(p_WQ.col(s));
       num_outside += one.in_grid ? 0 : 1;
       Require(batch.distance_m(s) == one.distance_m && columns.distance_m(s) == one.distance_m &&
                   batch.gradient_W.col(s) == one.gradient_W &&
@@ -263,10 +265,10 @@ void CheckQueries(Input& input) {
 }
 
 // A composite at time t by definition: each object at the nearest whole cell.
-AlignedVector<float> ComposeCellByCell(const Scene& scene, EpisodeTime t) {
+sdf::AlignedVector<float> ComposeCellByCell(const Scene& scene, EpisodeTime t) {
   const GridSpec& spec = scene.static_W->spec();
-  AlignedVector<float> least_m = scene.static_W->distance_m();
-  for (const MovingField& object : scene.objects) {
+  sdf::AlignedVector<float> least_m = scene.static_W->distance_m();
+  for (const sdf::MovingField& object : scene.objects) {
     const GridSpec& object_spec = object.field_O->spec();
     const Eigen::Vector3d from_first =
         object.X_WO(t).translation() + object_spec.first_center_m - spec.first_center_m;
@@ -285,11 +287,11 @@ AlignedVector<float> ComposeCellByCell(const Scene& scene, EpisodeTime t) {
 void CheckDenseGrids(Input& input) {
   const int num_steps = Number(input, 1, 6);
   const Scene scene = ReadScene(input, 4, false);
-  DenseSteps steps(scene.static_W, scene.objects);
+  sdf::DenseSteps steps(scene.static_W, scene.objects);
   for (int n = 0; n < num_steps; ++n) {
     const EpisodeTime t(Number(input, 0, 40));
-    const AlignedVector<float> expected = ComposeCellByCell(scene, t);
-    Require(AreSame(ComposeDense(*scene.static_W, scene.objects, t).distance_m(), expected),
+    const sdf::AlignedVector<float> expected = ComposeCellByCell(scene, t);
+    Require(AreSame(sdf::ComposeDense(*scene.static_W, scene.objects, t).distance_m(), expected),
             "the dense composite differs from the least of all fields");
     Require(AreSame(steps.At(t), expected), "the incremental composite differs from the dense one");
   }
@@ -330,13 +332,13 @@ void CheckSegmentation(Input& input) {
     left_out[n] = bytes[n] & 2;
   }
   std::vector<int> labels(grid.cells.size(), -1);
-  for (const Component& component : FindComponents(grid, left_out)) {
+  for (const sdf::Component& component : sdf::FindComponents(grid, left_out)) {
     Require(std::is_sorted(component.cells.begin(), component.cells.end()), "cells are unsorted");
     for (const std::size_t cell : component.cells) {
       Require(labels[cell] == -1, "a cell is in two components");
       labels[cell] = static_cast<int>(component.cells.front());
     }
-    const OccupancyGrid shape = CutOut(component, grid.spec);
+    const OccupancyGrid shape = sdf::CutOut(component, grid.spec);
     Require(shape.CountFilled() == component.cells.size(), "a component is cut out wrongly");
   }
   for (std::size_t n = 0; n < left_out.size(); ++n) {
@@ -347,7 +349,7 @@ void CheckSegmentation(Input& input) {
 
 void CheckRasteriser(Input& input) {
   const GridSpec spec{Eigen::Vector3d::Constant(-1), kCell_m, ReadSize(input, 3000)};
-  ScanRasteriser rasteriser(spec);
+  sdf::ScanRasteriser rasteriser(spec);
   Scan scan;
   for (int n = Number(input, 1, 12); n > 0; --n) {
     // As a sensor does: some of what it saw before, then other points; sometimes from elsewhere.

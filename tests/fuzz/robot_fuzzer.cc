@@ -1,8 +1,8 @@
 // Any file is refused with an InputError, or is a robot whose kinematics can be asked for.
 #include <cstdlib>
 
-#include "core/input_error.h"
-#include "robot/robot_model.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/robot/robot_model.h"
 #include "tests/fuzz/memory_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {

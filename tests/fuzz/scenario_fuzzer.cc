@@ -1,8 +1,8 @@
 // Any text is refused with an InputError, or is a scenario whose own text is one, too.
 #include <string>
 
-#include "core/input_error.h"
-#include "scenarios/scenario.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/scenarios/scenario.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(bytes), size);

@@ -11,45 +11,45 @@
 #include <string>
 #include <vector>
 
-#include "core/hdf5_image.h"
-#include "core/input_error.h"
-#include "core/recording.h"
-#include "core/sealed_file.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/record/hdf5_image.h"
+#include "sidestep/record/recording_file.h"
+#include "sidestep/record/sealed_file.h"
 #include "tests/fuzz/memory_file.h"
 #include "tests/support/full_recording.h"
 
 namespace sidestep {
 namespace {
 
-const SealedFormat kFormat = {"sidestep trace", 1};
+const record::SealedFormat kFormat = {"sidestep trace", 1};
 
 std::vector<unsigned char> GoodPayload() {
   char folder[] = "/tmp/trace_fuzzer_XXXXXX";
   if (mkdtemp(folder) == nullptr) std::abort();
   const std::string path = std::string(folder) + "/good.h5";
-  WriteRecording(FullRecording(3), path);
-  std::vector<unsigned char> payload = ReadSealedFile(path, kFormat);
+  record::WriteRecording(FullRecording(3), path);
+  std::vector<unsigned char> payload = record::ReadSealedFile(path, kFormat);
   unlink(path.c_str());
   rmdir(folder);
   return payload;
 }
 
 // An HDF5 file in memory that can be changed.
-Hdf5Id OpenImage(std::vector<unsigned char> image) {
-  const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS));
+record::Hdf5Id OpenImage(std::vector<unsigned char> image) {
+  const record::Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_fapl_core(access, 4096, false);
   H5Pset_file_image(access, image.data(), image.size());
-  return Hdf5Id(H5Fopen("in memory", H5F_ACC_RDWR, access));
+  return record::Hdf5Id(H5Fopen("in memory", H5F_ACC_RDWR, access));
 }
 
-std::vector<unsigned char> ImageOf(const Hdf5Id& file) {
+std::vector<unsigned char> ImageOf(const record::Hdf5Id& file) {
   H5Fflush(file, H5F_SCOPE_GLOBAL);
   std::vector<unsigned char> image(static_cast<std::size_t>(H5Fget_file_image(file, nullptr, 0)));
   if (H5Fget_file_image(file, image.data(), image.size()) < 0) std::abort();
   return image;
 }
 
-std::vector<std::string> DatasetsOf(const Hdf5Id& file) {
+std::vector<std::string> DatasetsOf(const record::Hdf5Id& file) {
   std::vector<std::string> paths;
   const auto collect = [](hid_t, const char* path, const H5O_info_t* info, void* to) -> herr_t {
     if (info->type == H5O_TYPE_DATASET) {
@@ -71,25 +71,25 @@ std::vector<unsigned char> Values(FuzzedDataProvider& data, std::size_t num_byte
   return bytes;
 }
 
-Hdf5Id AnyType(FuzzedDataProvider& data) {
+record::Hdf5Id AnyType(FuzzedDataProvider& data) {
   switch (data.ConsumeIntegralInRange(0, 3)) {
     case 0:
-      return Hdf5Id(H5Tcopy(H5T_NATIVE_DOUBLE));
+      return record::Hdf5Id(H5Tcopy(H5T_NATIVE_DOUBLE));
     case 1:
-      return Hdf5Id(H5Tcopy(H5T_NATIVE_INT64));
+      return record::Hdf5Id(H5Tcopy(H5T_NATIVE_INT64));
     case 2:
-      return Hdf5Id(H5Tcopy(H5T_NATIVE_INT8));
+      return record::Hdf5Id(H5Tcopy(H5T_NATIVE_INT8));
     default:
       break;
   }
-  Hdf5Id text(H5Tcopy(H5T_C_S1));
+  record::Hdf5Id text(H5Tcopy(H5T_C_S1));
   H5Tset_size(text, data.ConsumeIntegralInRange<std::size_t>(1, 20));
   return text;
 }
 
-void Replace(const Hdf5Id& file, const std::string& path, FuzzedDataProvider& data) {
+void Replace(const record::Hdf5Id& file, const std::string& path, FuzzedDataProvider& data) {
   H5Ldelete(file, path.c_str(), H5P_DEFAULT);
-  const Hdf5Id type = AnyType(data);
+  const record::Hdf5Id type = AnyType(data);
   std::vector<hsize_t> shape(data.ConsumeIntegralInRange<std::size_t>(0, 3));
   const bool huge = data.ConsumeProbability<float>() > 0.9f;
   std::size_t num_values = 1;
@@ -97,25 +97,25 @@ void Replace(const Hdf5Id& file, const std::string& path, FuzzedDataProvider& da
     size = huge ? data.ConsumeIntegral<std::uint64_t>() : data.ConsumeIntegralInRange(0, 40);
     num_values *= size;
   }
-  const Hdf5Id creation(H5Pcreate(H5P_DATASET_CREATE));
+  const record::Hdf5Id creation(H5Pcreate(H5P_DATASET_CREATE));
   if (huge && !shape.empty()) {
     const std::vector<hsize_t> chunk(shape.size(), 1);
     H5Pset_chunk(creation, static_cast<int>(chunk.size()), chunk.data());
   }
-  const Hdf5Id space(shape.empty()
-                         ? H5Screate(H5S_SCALAR)
-                         : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr));
-  const Hdf5Id dataset(
+  const record::Hdf5Id space(
+      shape.empty() ? H5Screate(H5S_SCALAR)
+                    : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr));
+  const record::Hdf5Id dataset(
       H5Dcreate2(file, path.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT));
   if (huge || !dataset.valid()) return;
   const auto values = Values(data, num_values * H5Tget_size(type));
   H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
 }
 
-void ChangeOneValue(const Hdf5Id& file, const std::string& path, FuzzedDataProvider& data) {
-  const Hdf5Id dataset(H5Dopen2(file, path.c_str(), H5P_DEFAULT));
+void ChangeOneValue(const record::Hdf5Id& file, const std::string& path, FuzzedDataProvider& data) {
+  const record::Hdf5Id dataset(H5Dopen2(file, path.c_str(), H5P_DEFAULT));
   if (!dataset.valid()) return;  // it was deleted
-  const Hdf5Id type(H5Dget_type(dataset)), space(H5Dget_space(dataset));
+  const record::Hdf5Id type(H5Dget_type(dataset)), space(H5Dget_space(dataset));
   const std::size_t value_bytes = H5Tget_size(type);
   const hssize_t num_values = H5Sget_simple_extent_npoints(space);
   if (num_values <= 0 || num_values > 10000) return;
@@ -131,8 +131,8 @@ void ChangeOneValue(const Hdf5Id& file, const std::string& path, FuzzedDataProvi
 std::string FaultyTrace(FuzzedDataProvider& data) {
   static const std::vector<unsigned char> good = GoodPayload();
   static const std::vector<std::string> paths = DatasetsOf(OpenImage(good));
-  const Hdf5Session session;
-  const Hdf5Id file = OpenImage(good);
+  const record::Hdf5Session session;
+  const record::Hdf5Id file = OpenImage(good);
   const int num_faults = data.ConsumeIntegralInRange(0, 3);
   for (int i = 0; i < num_faults; ++i) {
     const std::string& path = paths[data.ConsumeIntegralInRange<std::size_t>(0, paths.size() - 1)];
@@ -148,13 +148,13 @@ std::string FaultyTrace(FuzzedDataProvider& data) {
         break;
     }
   }
-  return SealedBytes(kFormat, ImageOf(file));
+  return record::SealedBytes(kFormat, ImageOf(file));
 }
 
 void Read(const std::string& bytes) {
   const MemoryFile file(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
   try {
-    ReadRecording(file.path());
+    record::ReadRecording(file.path());
   } catch (const InputError&) {
   }
 }

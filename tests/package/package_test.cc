@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sidestep/planner/registry.h"
+#include "sidestep/sdf/prediction/registry.h"
 #include "tests/package/installation.h"
 
 namespace sidestep {
@@ -22,9 +24,12 @@ TEST(Package, IsFoundBuiltAgainstAndRunByAnOutsideProject) {
   ASSERT_EQ(configured.exit_code, 0) << configured.out << configured.err;
   const Finished built = RunProgram({CMAKE_PROGRAM, "--build", build});
   ASSERT_EQ(built.exit_code, 0) << built.out << built.err;
-  const Finished run = RunProgram({build + "/outside"}, {}, build);
+  const Finished run = RunProgram({build + "/outside", build + "/libplug_in.so"}, {}, build);
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("planning cycles"));
+  // As many as this program knows, which is linked with the same libraries.
+  const std::size_t known = planner::PlannerNames().size() + sdf::PredictorNames().size();
+  EXPECT_THAT(run.out, HasSubstr(std::to_string(known) + " planners and predictors"));
 }
 
 TEST(Package, AsADebianOneRunsWhereItIsUnpacked) {

@@ -10,19 +10,19 @@
 #include <string>
 #include <vector>
 
-#include "planner/costs/acceleration_limit_cost.h"
-#include "planner/costs/gp_prior_cost.h"
-#include "planner/costs/interpolated_obstacle_cost.h"
-#include "planner/costs/mid_velocity_limit_cost.h"
-#include "planner/costs/obstacle_cost.h"
-#include "planner/costs/state_limit_cost.h"
-#include "planner/costs/state_prior_cost.h"
-#include "planner/gp_trajectory.h"
+#include "sidestep/planner/costs/acceleration_limit_cost.h"
+#include "sidestep/planner/costs/gp_prior_cost.h"
+#include "sidestep/planner/costs/interpolated_obstacle_cost.h"
+#include "sidestep/planner/costs/mid_velocity_limit_cost.h"
+#include "sidestep/planner/costs/obstacle_cost.h"
+#include "sidestep/planner/costs/state_limit_cost.h"
+#include "sidestep/planner/costs/state_prior_cost.h"
+#include "sidestep/planner/gp_trajectory.h"
 #include "tests/support/ball_field.h"
 #include "tests/support/jacobian_check.h"
 #include "tests/support/planar_arm.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 namespace {
 
 constexpr double kStep_s = 0.1;
@@ -38,7 +38,7 @@ Eigen::VectorXd Residuals(const ceres::CostFunction& cost,
 
 // The arm beside a ball that passes in front of it, which the costs of a case may watch.
 struct World {
-  RobotModel arm = MakePlanarArm();
+  robot::RobotModel arm = MakePlanarArm();
   BallField field{{0.9, 0.3, 0}, {0, -0.3, 0.05}, 0.1};
   ObstacleHinge hinge{arm, field, /*epsilon_m=*/0.2, /*sigma=*/0.05};
 };
@@ -73,8 +73,8 @@ std::unique_ptr<ceres::CostFunction> MidVelocity(World&) {
 
 // Costs of an arm folded so far that its links are within the margin of each other.
 struct FoldedWorld {
-  RobotModel arm =
-      RobotModel::FromFile(SIDESTEP_SOURCE_DIR "/tests/support/folding_arm.yaml", Pose());
+  robot::RobotModel arm =
+      robot::RobotModel::FromFile(SIDESTEP_SOURCE_DIR "/tests/support/folding_arm.yaml", Pose());
   BallField field{{100, 0, 0}, {0, 0, 0}, 0.1};
   ObstacleHinge hinge{arm, field, /*epsilon_m=*/0.2, /*sigma=*/0.05, /*self_epsilon_m=*/0.1};
 };
@@ -139,7 +139,7 @@ TEST(ObstacleHinge, IsTheMarginThatIsMissingInUnitsOfSigma) {
   const Eigen::Vector2d q(0.3, 0.05);
   const EpisodeTime t(0.1);
   world.hinge.Evaluate(q, t, false);
-  const SphereCenters centers = world.arm.ComputeSphereCenters(q, false);
+  const robot::SphereCenters centers = world.arm.ComputeSphereCenters(q, false);
   ASSERT_EQ(world.hinge.num_hinges(), 5) << "sphere 0 is mounted";
   int active = 0;
   for (int s = 0; s < 5; ++s) {
@@ -173,7 +173,8 @@ TEST(ObstacleHinge, PushesLinksApartThatComeNearEachOther) {
 
 // A cost of one configuration of the Panda, all of it within the margin of a ball.
 struct PandaNearABall {
-  RobotModel panda = RobotModel::FromFile(SIDESTEP_SOURCE_DIR "/models/panda/robot.yaml", Pose());
+  robot::RobotModel panda =
+      robot::RobotModel::FromFile(SIDESTEP_SOURCE_DIR "/models/panda/robot.yaml", Pose());
   BallField field{{0.4, 0.2, 0.5}, {0, 0, 0}, 0.1};
   Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(7, -0.5, 0.7);
 
@@ -220,7 +221,7 @@ TEST(ObstacleHinge, HasNoneForLinksWithoutAMargin) {
 }
 
 TEST(ObstacleHinge, LeavesMountSpheresOut) {
-  const RobotModel arm = MakePlanarArm();
+  const robot::RobotModel arm = MakePlanarArm();
   const BallField at_base({0, 0, 0}, {0, 0, 0}, 0.02);
   ObstacleHinge hinge(arm, at_base, /*epsilon_m=*/0.05, /*sigma=*/1);
   hinge.Evaluate(Eigen::Vector2d(0.4, 0.2), EpisodeTime(0), true);
@@ -276,4 +277,4 @@ TEST(MidVelocityLimitCost, IsTheExcessOfTheCubicInTheMiddle) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "planner/registry.h"
+#include "sidestep/planner/registry.h"
 #include "tests/support/ball_field.h"
 #include "tests/support/planar_arm.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -48,7 +48,7 @@ class EveryPlanner : public ::testing::TestWithParam<std::string> {
     return MakePlanner(GetParam(), arm_, {})->Plan(request);
   }
 
-  const RobotModel arm_ = MakePlanarArm();
+  const robot::RobotModel arm_ = MakePlanarArm();
   const BallField field_{{0.9, 0.4, 0}, {0, -0.3, 0}, 0.15};
 };
 
@@ -176,4 +176,4 @@ TEST(PlannerRegistry, NamesThePlannersThereAreWhenAskedForAnother) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::planner

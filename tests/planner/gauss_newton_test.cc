@@ -1,6 +1,6 @@
 // The fast chain against the plain formulation (GpProblem) and against dense algebra.
 
-#include "planner/gauss_newton.h"
+#include "sidestep/planner/gauss_newton.h"
 
 #include <ceres/crs_matrix.h>
 #include <gtest/gtest.h>
@@ -8,12 +8,12 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "planner/gauss_newton_band.h"
-#include "planner/gp_problem.h"
+#include "sidestep/planner/gauss_newton_band.h"
+#include "sidestep/planner/gp_problem.h"
 #include "tests/support/ball_field.h"
 #include "tests/support/planar_arm.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 namespace {
 
 constexpr int kNumStates = 9;
@@ -96,7 +96,7 @@ class GaussNewtonTest : public ::testing::Test {
     return options;
   }
 
-  const RobotModel arm_ = MakePlanarArm();
+  const robot::RobotModel arm_ = MakePlanarArm();
   const BallField ball_{{0.9, 0.3, 0}, {0, -0.3, 0.05}, 0.1};
   const EpisodeTime start_{0.3};
   const Eigen::Vector2d q_goal_{0.9, -0.1};
@@ -199,4 +199,4 @@ TEST_F(GaussNewtonTest, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::planner

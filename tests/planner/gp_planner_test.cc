@@ -1,14 +1,14 @@
-#include "planner/gp_planner.h"
+#include "sidestep/planner/gp_planner.h"
 
 #include <gtest/gtest.h>
 
-#include "planner/clearance.h"
-#include "planner/first_guess.h"
-#include "planner/gp_trajectory.h"
+#include "sidestep/planner/clearance.h"
+#include "sidestep/planner/first_guess.h"
+#include "sidestep/planner/gp_trajectory.h"
 #include "tests/support/ball_field.h"
 #include "tests/support/planar_arm.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 namespace {
 
 PlannerSettings WithoutLimits() {
@@ -19,7 +19,7 @@ PlannerSettings WithoutLimits() {
 
 class GpPlannerTest : public ::testing::Test {
  protected:
-  PlanRequest Request(const DistanceField& field) const {
+  PlanRequest Request(const sdf::DistanceField& field) const {
     PlanRequest request;
     request.field = &field;
     request.step_s = 0.1;
@@ -30,7 +30,7 @@ class GpPlannerTest : public ::testing::Test {
     return request;
   }
 
-  const RobotModel arm_ = MakePlanarArm();
+  const robot::RobotModel arm_ = MakePlanarArm();
   const BallField nothing_{{100, 0, 0}, {0, 0, 0}, 0.1};
 };
 
@@ -131,4 +131,4 @@ TEST_F(GpPlannerTest, AWarmStartFromItsOwnPlanChangesLittleAndCostsLittle) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::planner

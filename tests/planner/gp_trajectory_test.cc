@@ -1,4 +1,4 @@
-#include "planner/gp_trajectory.h"
+#include "sidestep/planner/gp_trajectory.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-namespace sidestep {
+namespace sidestep::planner {
 namespace {
 
 class GpOfInterval : public ::testing::TestWithParam<double> {};
@@ -86,4 +86,4 @@ TEST(GpCost, OfASingleStateIsZero) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::planner

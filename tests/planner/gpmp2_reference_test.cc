@@ -12,11 +12,11 @@
 #include <sstream>
 #include <string>
 
-#include "planner/gp_problem.h"
-#include "planner/planner.h"
-#include "robot/robot_model.h"
+#include "sidestep/planner/gp_problem.h"
+#include "sidestep/planner/planner.h"
+#include "sidestep/robot/robot_model.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 namespace {
 
 using gpmp2_reference::kNumStates;
@@ -36,8 +36,8 @@ class Gpmp2Reference : public ::testing::Test {
   static void SetUpTestSuite() { field_ = std::make_unique<gpmp2_reference::SteppedField>(); }
   static void TearDownTestSuite() { field_.reset(); }
 
-  static RobotModel MakeWam() {
-    return RobotModel::Load(SIDESTEP_SOURCE_DIR "/models", "wam", Pose());
+  static robot::RobotModel MakeWam() {
+    return robot::RobotModel::Load(SIDESTEP_SOURCE_DIR "/models", "wam", Pose());
   }
 
   static PlanRequest Request() {
@@ -134,12 +134,12 @@ class Gpmp2Reference : public ::testing::Test {
     return cost;
   }
 
-  inline static const RobotModel wam_ = MakeWam();
+  inline static const robot::RobotModel wam_ = MakeWam();
   inline static std::unique_ptr<gpmp2_reference::SteppedField> field_;
 };
 
 TEST_F(Gpmp2Reference, ForwardKinematicsAtTheStartAgree) {
-  const SphereCenters centers =
+  const robot::SphereCenters centers =
       wam_.ComputeSphereCenters(wam_.configurations().at("pose1"), /*with_jacobian=*/false);
   const Eigen::Vector3d sphere_5(-0.347511658501, 0.422246388756, -0.073950215608);
   const Eigen::Vector3d sphere_13(-0.284257216582, 0.939785131234, -0.128106861879);
@@ -178,4 +178,4 @@ TEST_F(Gpmp2Reference, SolutionOfTheSparseObjectiveIsNoWorse) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::planner

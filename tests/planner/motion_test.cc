@@ -6,13 +6,13 @@
 #include <cmath>
 #include <iterator>
 
-#include "planner/clearance.h"
-#include "planner/first_guess.h"
-#include "planner/limit_use.h"
+#include "sidestep/planner/clearance.h"
+#include "sidestep/planner/first_guess.h"
+#include "sidestep/planner/limit_use.h"
 #include "tests/support/ball_field.h"
 #include "tests/support/planar_arm.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 namespace {
 
 PlanRequest Request() {
@@ -105,7 +105,7 @@ Trajectory Rest() {
 }
 
 TEST(Clearance, IsThatOfTheNearestSphereAtTheNearestTime) {
-  const RobotModel arm = MakePlanarArm();
+  const robot::RobotModel arm = MakePlanarArm();
   // The arm stays stretched along x; the ball passes 0.3 m beyond its tip at t = 1.
   const BallField field({1.3, -1, 0}, {0, 1, 0}, 0.1);
   const Trajectory rest = Rest();
@@ -121,7 +121,7 @@ TEST(Clearance, IsThatOfTheNearestSphereAtTheNearestTime) {
 }
 
 TEST(Clearance, NamesTheFirstMomentAtWhichSomethingTouches) {
-  const RobotModel arm = MakePlanarArm();
+  const robot::RobotModel arm = MakePlanarArm();
   // The ball passes through the tip at t = 1, and touches it first 0.14 s earlier.
   const BallField field({1, -1, 0}, {0, 1, 0}, 0.1);
   const Trajectory rest = Rest();
@@ -147,7 +147,7 @@ TEST(IsSafer, PrefersWhatIsFreeThenWhatIsFreeForLongerThenWhatKeepsMoreDistance)
 }
 
 TEST(Clearance, LeavesMountSpheresOut) {
-  const RobotModel arm = MakePlanarArm();
+  const robot::RobotModel arm = MakePlanarArm();
   const BallField at_base({0, 0, 0}, {0, 0, 0}, 0.05);
   const Trajectory rest = Rest();
   const EpisodeTime t(0);
@@ -168,4 +168,4 @@ TEST(LimitUse, IsThatOfTheCubicBetweenItsStates) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -1,4 +1,4 @@
-#include "planner/replanner.h"
+#include "sidestep/planner/replanner.h"
 
 #include <gtest/gtest.h>
 
@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "planner/clearance.h"
-#include "planner/registry.h"
+#include "sidestep/planner/clearance.h"
+#include "sidestep/planner/registry.h"
 #include "tests/support/moving_ball_world.h"
 #include "tests/support/planar_arm.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 namespace {
 
 const Eigen::Vector2d kStart(-1.1, 0.3), kGoal(1.2, -0.2);
@@ -85,7 +85,7 @@ class Loop {
   }
 
   MovingBallWorld& world_;
-  const RobotModel arm_ = MakePlanarArm();
+  const robot::RobotModel arm_ = MakePlanarArm();
   std::unique_ptr<Planner> planner_;
   Replanner replanner_;
   std::optional<TimedPlan> plan_;
@@ -266,4 +266,4 @@ TEST(Replanner, RefusesOptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::planner

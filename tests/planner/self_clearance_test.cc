@@ -1,6 +1,6 @@
 // Links that come near each other: distances, against closed forms and MuJoCo's own contacts.
 
-#include "planner/self_clearance.h"
+#include "sidestep/planner/self_clearance.h"
 
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
@@ -13,28 +13,28 @@
 #include <random>
 #include <string>
 
-#include "planner/clearance.h"
-#include "planner/first_guess.h"
-#include "planner/gp_planner.h"
+#include "sidestep/planner/clearance.h"
+#include "sidestep/planner/first_guess.h"
+#include "sidestep/planner/gp_planner.h"
 #include "tests/support/ball_field.h"
 
-namespace sidestep {
+namespace sidestep::planner {
 namespace {
 
 const std::string kModels = SIDESTEP_SOURCE_DIR "/models";
 
 // Two links of 0.5 m in a plane, folded at the elbow by q2, a ball at the far end of either.
-RobotModel MakeFoldingArm() {
-  return RobotModel::FromFile(SIDESTEP_SOURCE_DIR "/tests/support/folding_arm.yaml", Pose());
+robot::RobotModel MakeFoldingArm() {
+  return robot::RobotModel::FromFile(SIDESTEP_SOURCE_DIR "/tests/support/folding_arm.yaml", Pose());
 }
 
-double GapAt(const RobotModel& arm, double q1, double q2) {
+double GapAt(const robot::RobotModel& arm, double q1, double q2) {
   const Eigen::Vector2d q(q1, q2);
   return SelfClearance(arm).Least(arm.ComputeSphereCenters(q, false).p_WS);
 }
 
 TEST(SelfClearance, IsTheGapBetweenTheNearestSpheresOfTheTwoLinks) {
-  const RobotModel arm = MakeFoldingArm();
+  const robot::RobotModel arm = MakeFoldingArm();
   // The tip lies 0.5 m from the elbow, at an angle of pi - q2 to the upper arm's sphere 0.4 m away.
   for (const double q2 : {0.5, 1.5, 2.8, -2.9}) {
     const double distance_m = std::sqrt(0.25 + 0.16 - 2 * 0.5 * 0.4 * std::cos(M_PI - q2));
@@ -43,14 +43,14 @@ TEST(SelfClearance, IsTheGapBetweenTheNearestSpheresOfTheTwoLinks) {
 }
 
 TEST(SelfClearance, IsEndlessForARobotThatNamesNoLinks) {
-  const RobotModel arm =
-      RobotModel::FromFile(SIDESTEP_SOURCE_DIR "/tests/support/planar_arm.yaml", Pose());
+  const robot::RobotModel arm =
+      robot::RobotModel::FromFile(SIDESTEP_SOURCE_DIR "/tests/support/planar_arm.yaml", Pose());
   EXPECT_EQ(SelfClearance(arm).num_pairs(), 0);
   EXPECT_EQ(GapAt(arm, 0, 3), std::numeric_limits<double>::infinity());
 }
 
 TEST(SelfClearance, CountsInTheVerdictOnAMotion) {
-  const RobotModel arm = MakeFoldingArm();
+  const robot::RobotModel arm = MakeFoldingArm();
   const BallField nothing({100, 0, 0}, {0, 0, 0}, 0.1);
   const Trajectory folding{Eigen::Vector2d(0, 1),
                            (Eigen::MatrixXd(2, 2) << 0, 0, 0, 2.8).finished(),
@@ -74,7 +74,7 @@ class FoldingArm : public ::testing::Test {
     return request;
   }
 
-  const RobotModel arm_ = MakeFoldingArm();
+  const robot::RobotModel arm_ = MakeFoldingArm();
   const BallField nothing_{{100, 0, 0}, {0, 0, 0}, 0.1};
 };
 
@@ -98,7 +98,7 @@ class SelfContact : public ::testing::TestWithParam<std::string> {};
 // What a planner knows of self-contact are the spheres of some pairs of links. They miss no contact
 // that MuJoCo finds at random configurations, but those with the fixed base, which has no spheres.
 TEST_P(SelfContact, IsSeenWithinTheMarginOfThePlanner) {
-  const RobotModel robot = RobotModel::Load(kModels, GetParam(), Pose());
+  const robot::RobotModel robot = robot::RobotModel::Load(kModels, GetParam(), Pose());
   const std::string path = kModels + "/" + GetParam() + "/" + GetParam() + ".xml";
   char error[1000] = "";
   const std::unique_ptr<mjModel, void (*)(mjModel*)> model(
@@ -112,7 +112,7 @@ TEST_P(SelfContact, IsSeenWithinTheMarginOfThePlanner) {
   for (int i = 0; i < 5000; ++i) {
     Eigen::VectorXd q(robot.num_joints());
     for (int j = 0; j < q.size(); ++j) {
-      const JointLimits& limits = robot.limits()[static_cast<std::size_t>(j)];
+      const robot::JointLimits& limits = robot.limits()[static_cast<std::size_t>(j)];
       q(j) = std::uniform_real_distribution<double>(std::max(limits.q_min, -3.0),
                                                     std::min(limits.q_max, 3.0))(random);
     }
@@ -134,8 +134,9 @@ TEST_P(SelfContact, IsSeenWithinTheMarginOfThePlanner) {
             << " have links nearer than the margin\n";
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, SelfContact, ::testing::ValuesIn(RobotModel::ListNames(kModels)),
+INSTANTIATE_TEST_SUITE_P(Models, SelfContact,
+                         ::testing::ValuesIn(robot::RobotModel::ListNames(kModels)),
                          [](const auto& test) { return test.param; });
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::planner

@@ -1,4 +1,4 @@
-#include "render/camera.h"
+#include "sidestep/render/camera.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-namespace sidestep {
+namespace sidestep::render {
 namespace {
 
 // Where a camera sees points: tangents to the right and up, one column a point.
@@ -66,4 +66,4 @@ TEST(FitCamera, LooksInTheDirectionItIsTold) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::render

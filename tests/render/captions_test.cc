@@ -1,4 +1,4 @@
-#include "render/captions.h"
+#include "sidestep/render/captions.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "tests/render/sample_recording.h"
 
-namespace sidestep {
+namespace sidestep::render {
 namespace {
 
 TEST(Captions, NameWhatThePlannerWasTold) {
@@ -19,11 +19,11 @@ TEST(Captions, NameWhatThePlannerWasTold) {
                {"full_knowledge", "Full knowledge"},
                {"telepathy", "telepathy"}};
   for (const auto& c : cases) {
-    Recording recording;
+    record::Recording recording;
     recording.header["knowledge"] = c.knowledge;
     EXPECT_EQ(TitleOf(recording, "trace.h5").name, c.name);
   }
-  EXPECT_EQ(TitleOf(Recording(), "trace.h5").name, "trace.h5");
+  EXPECT_EQ(TitleOf(record::Recording(), "trace.h5").name, "trace.h5");
 }
 
 struct StatusCase {
@@ -53,7 +53,7 @@ TEST(Captions, TellHowTheEpisodeStands) {
 }
 
 TEST(Captions, SayThatTheGoalWasNotReachedOnlyAtTheEnd) {
-  Recording recording = MakeSampleRecording({});
+  record::Recording recording = MakeSampleRecording({});
   recording.metrics["time_to_goal_s"] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(StatusAt(recording, EpisodeTime(1.99)).mood, Mood::kNeutral);
   EXPECT_EQ(StatusAt(recording, EpisodeTime(2.0)).text, "goal not reached, least clearance 31 mm");
@@ -61,8 +61,8 @@ TEST(Captions, SayThatTheGoalWasNotReachedOnlyAtTheEnd) {
 }
 
 TEST(Captions, AreSilentAboutWhatWasNotRecorded) {
-  EXPECT_EQ(StatusAt(Recording(), EpisodeTime(0)).text, "");
+  EXPECT_EQ(StatusAt(record::Recording(), EpisodeTime(0)).text, "");
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::render

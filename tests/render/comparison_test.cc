@@ -1,4 +1,4 @@
-#include "render/comparison.h"
+#include "sidestep/render/comparison.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "core/input_error.h"
+#include "sidestep/core/input_error.h"
 #include "tests/render/sample_recording.h"
 
-namespace sidestep {
+namespace sidestep::render {
 namespace {
 
 using ::testing::HasSubstr;
@@ -255,4 +255,4 @@ TEST(Comparison, RefusesWhatCannotBeDrawn) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::render

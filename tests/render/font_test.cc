@@ -1,11 +1,11 @@
-#include "render/font.h"
+#include "sidestep/render/font.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 #include <string>
 
-namespace sidestep {
+namespace sidestep::render {
 namespace {
 
 constexpr Color kWhite = {255, 255, 255};
@@ -86,4 +86,4 @@ TEST(Font, DrawsEveryPrintableLetterDifferentlyAndOthersAsQuestionMarks) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::render

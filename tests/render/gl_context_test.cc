@@ -1,4 +1,4 @@
-#include "render/gl_context.h"
+#include "sidestep/render/gl_context.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <string>
 
-#include "core/input_error.h"
+#include "sidestep/core/input_error.h"
 
-namespace sidestep {
+namespace sidestep::render {
 namespace {
 
 using ::testing::HasSubstr;
@@ -63,4 +63,4 @@ TEST_F(GlEnvironment, DrawsNothingWhereItIsForbidden) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::render

@@ -1,10 +1,10 @@
-#include "render/image.h"
+#include "sidestep/render/image.h"
 
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
-namespace sidestep {
+namespace sidestep::render {
 namespace {
 
 constexpr Color kBlack = {0, 0, 0}, kRed = {200, 10, 20}, kWhite = {255, 255, 255};
@@ -67,4 +67,4 @@ TEST(Image, PastesWhatFits) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::render

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace sidestep {
+namespace sidestep::render {
 namespace {
 
 constexpr const char* kModel = R"(
@@ -65,8 +65,8 @@ Pose TrolleyPoseAt(double t_s) {
   return Pose::Translation({0.55, 1.5 - kTrolleySpeed_m_s * t_s, 0.5});
 }
 
-Recording MakeSampleRecording(const SampleEpisode& episode) {
-  Recording recording;
+record::Recording MakeSampleRecording(const SampleEpisode& episode) {
+  record::Recording recording;
   recording.header = {{"scenario", "sample"}, {"knowledge", episode.knowledge}};
   recording.model_xml = kModel;
   recording.joints = {"pan", "shoulder", "elbow"};
@@ -131,4 +131,4 @@ Recording MakeSampleRecording(const SampleEpisode& episode) {
   return recording;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::render

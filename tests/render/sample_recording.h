@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "core/recording.h"
+#include "sidestep/record/recording.h"
 
-namespace sidestep {
+namespace sidestep::render {
 
 /// How the sample episode goes.
 struct SampleEpisode {
@@ -16,10 +16,10 @@ struct SampleEpisode {
 /// A three-link arm (green) on a table (brown) swings towards another table, while a trolley (blue)
 /// drives through between them; in the second half of each sample, the plan of the last cycle is in
 /// force. Made by hand: nothing is simulated.
-Recording MakeSampleRecording(const SampleEpisode& episode);
+record::Recording MakeSampleRecording(const SampleEpisode& episode);
 
 /// Where the trolley is expected to be, and is: X_WO at time t, and half its size [m].
 Pose TrolleyPoseAt(double t_s);
 inline constexpr double kTrolleySpeed_m_s = 1.2;
 
-}  // namespace sidestep
+}  // namespace sidestep::render

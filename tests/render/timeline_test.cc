@@ -1,4 +1,4 @@
-#include "render/timeline.h"
+#include "sidestep/render/timeline.h"
 
 #include <gtest/gtest.h>
 
@@ -8,13 +8,13 @@
 
 #include "tests/render/sample_recording.h"
 
-namespace sidestep {
+namespace sidestep::render {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 
 TEST(Timeline, GivesTheJointsBetweenSamplesOnAStraightLine) {
-  Recording recording;
+  record::Recording recording;
   for (const double t_s : {1.0, 2.0, 4.0}) {
     ControlSample sample;
     sample.t = EpisodeTime(t_s);
@@ -44,18 +44,18 @@ TEST(Timeline, TurnsPosesEvenlyAndClampsThemOutside) {
 }
 
 TEST(Timeline, FollowsTheObstacleAndItsSpeed) {
-  const Recording recording = MakeSampleRecording({});
+  const record::Recording recording = MakeSampleRecording({});
   for (const double t_s : {0.0, 0.333, 1.0, 1.999, 2.0}) {
     const std::vector<Pose> poses = ObstaclesAt(recording, EpisodeTime(t_s));
     ASSERT_EQ(poses.size(), 1u);
     EXPECT_LT((poses[0].translation() - TrolleyPoseAt(t_s).translation()).norm(), 1e-12);
     EXPECT_NEAR(ObstacleSpeedAt(recording, EpisodeTime(t_s)), kTrolleySpeed_m_s, 1e-9) << t_s;
   }
-  EXPECT_EQ(ObstacleSpeedAt(Recording(), EpisodeTime(0)), 0);
+  EXPECT_EQ(ObstacleSpeedAt(record::Recording(), EpisodeTime(0)), 0);
 }
 
 TEST(Timeline, KnowsWhichPlanIsInForce) {
-  Recording recording = MakeSampleRecording({});
+  record::Recording recording = MakeSampleRecording({});
   recording.cycles[3].accepted = false;     // observed at 0.3 s, of effect at 0.35 s
   recording.cycles[4].plan = Trajectory();  // 0.4 s, 0.45 s
   const struct {
@@ -70,20 +70,20 @@ TEST(Timeline, KnowsWhichPlanIsInForce) {
 }
 
 TEST(Timeline, FindsTheLeastClearanceUpToAMoment) {
-  const Recording recording = MakeSampleRecording({});  // 31 mm + 0.2 m/s |t - 1.25 s|
+  const record::Recording recording = MakeSampleRecording({});  // 31 mm + 0.2 m/s |t - 1.25 s|
   EXPECT_NEAR(LeastClearance(recording, EpisodeTime(0.5))->clearance_m, 0.031 + 0.15, 1e-12);
   EXPECT_NEAR(LeastClearance(recording, EpisodeTime(2))->clearance_m, 0.031, 1e-12);
   EXPECT_NEAR(LeastClearance(recording, EpisodeTime(2))->t.seconds(), 1.25, 1e-12);
   EXPECT_NEAR(ClearanceAt(recording, EpisodeTime(2))->clearance_m, 0.031 + 0.15, 1e-12);
-  EXPECT_FALSE(LeastClearance(Recording(), EpisodeTime(2)));
-  EXPECT_FALSE(ClearanceAt(Recording(), EpisodeTime(2)));
+  EXPECT_FALSE(LeastClearance(record::Recording(), EpisodeTime(2)));
+  EXPECT_FALSE(ClearanceAt(record::Recording(), EpisodeTime(2)));
 }
 
 TEST(Timeline, FindsTheFirstTouchAndTheRecentOnes) {
   EXPECT_FALSE(FirstTouch(MakeSampleRecording({})));
   SampleEpisode episode;
   episode.contact = true;  // from 1.00 s to 1.09 s
-  const Recording recording = MakeSampleRecording(episode);
+  const record::Recording recording = MakeSampleRecording(episode);
   ASSERT_TRUE(FirstTouch(recording));
   EXPECT_NEAR(FirstTouch(recording)->t.seconds(), 1.0, 1e-12);
   EXPECT_EQ(FirstTouch(recording)->object, "trolley");
@@ -95,7 +95,7 @@ TEST(Timeline, FindsTheFirstTouchAndTheRecentOnes) {
 }
 
 TEST(Timeline, TimesATouchWithoutATimeByItsSample) {
-  Recording recording;
+  record::Recording recording;
   TruthSample sample;
   sample.t = EpisodeTime(0.42);
   sample.in_contact = true;
@@ -104,4 +104,4 @@ TEST(Timeline, TimesATouchWithoutATimeByItsSample) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::render

@@ -1,4 +1,4 @@
-#include "render/trace_model.h"
+#include "sidestep/render/trace_model.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,10 +8,10 @@
 #include <limits>
 #include <string>
 
-#include "core/input_error.h"
+#include "sidestep/core/input_error.h"
 #include "tests/render/sample_recording.h"
 
-namespace sidestep {
+namespace sidestep::render {
 namespace {
 
 using ::testing::StartsWith;
@@ -24,7 +24,7 @@ Eigen::Vector3d TipOfSample(const Eigen::Vector3d& q) {
 }
 
 TEST(TraceModel, PutsJointsAndObstaclesWhereTheRecordingHasThem) {
-  const Recording recording = MakeSampleRecording({});
+  const record::Recording recording = MakeSampleRecording({});
   TraceModel trace(recording, "sample");
   trace.MoveTo(EpisodeTime(0.75));
   const int site = mj_name2id(&trace.model(), mjOBJ_SITE, "tip");
@@ -36,7 +36,7 @@ TEST(TraceModel, PutsJointsAndObstaclesWhereTheRecordingHasThem) {
 }
 
 TEST(TraceModel, TracesTheTipSoFarAndAsPlanned) {
-  const Recording recording = MakeSampleRecording({});
+  const record::Recording recording = MakeSampleRecording({});
   TraceModel trace(recording, "sample");
   const Eigen::Matrix3Xd trail = trace.TipTrail(EpisodeTime(0.5));
   ASSERT_EQ(trail.cols(), 51);
@@ -54,7 +54,7 @@ TEST(TraceModel, TracesTheTipSoFarAndAsPlanned) {
 }
 
 TEST(TraceModel, TellsRobotObstaclesAndNamesApart) {
-  const Recording recording = MakeSampleRecording({});
+  const record::Recording recording = MakeSampleRecording({});
   const TraceModel trace(recording, "sample");
   int robot = 0, obstacle = 0, table = 0, floor = 0;
   for (int geom = 0; geom < trace.model().ngeom; ++geom) {
@@ -72,7 +72,7 @@ TEST(TraceModel, TellsRobotObstaclesAndNamesApart) {
 }
 
 TEST(TraceModel, TakesTheEndOfTheChainForTheTipWhereThereIsNoSite) {
-  Recording recording = MakeSampleRecording({});
+  record::Recording recording = MakeSampleRecording({});
   const std::string site = "<site name=\"tip\" pos=\"0 0 0.35\"/>";
   const std::string hand =
       "<body pos=\"0 0 0.2\"><geom size=\"0.02\"/>"
@@ -93,22 +93,24 @@ TEST(TraceModel, TakesTheEndOfTheChainForTheTipWhereThereIsNoSite) {
 
 TEST(TraceModel, RefusesRecordingsItCannotDraw) {
   const struct {
-    std::function<void(Recording&)> spoil;
+    std::function<void(record::Recording&)> spoil;
     const char* message;
   } cases[] = {
-      {[](Recording& r) { r.control.clear(); }, "t.h5: holds no motion"},
-      {[](Recording& r) { r.joints.clear(); }, "t.h5: names no joints"},
-      {[](Recording& r) { r.joints[1] = "knee"; }, "t.h5: its model has no joint 'knee'"},
-      {[](Recording& r) { r.obstacles[0] = "near_table"; },
+      {[](record::Recording& r) { r.control.clear(); }, "t.h5: holds no motion"},
+      {[](record::Recording& r) { r.joints.clear(); }, "t.h5: names no joints"},
+      {[](record::Recording& r) { r.joints[1] = "knee"; }, "t.h5: its model has no joint 'knee'"},
+      {[](record::Recording& r) { r.obstacles[0] = "near_table"; },
        "t.h5: its model has no mocap body 'near_table'"},
-      {[](Recording& r) { r.control[5].q(0) = std::numeric_limits<double>::quiet_NaN(); },
+      {[](record::Recording& r) { r.control[5].q(0) = std::numeric_limits<double>::quiet_NaN(); },
        "t.h5: holds a joint position that is not finite"},
-      {[](Recording& r) { r.model_xml = "<mujoco><worldbody><geom/></worldbody></mujoco>"; },
+      {[](record::Recording& r) {
+         r.model_xml = "<mujoco><worldbody><geom/></worldbody></mujoco>";
+       },
        "t.h5: model_xml: "},
-      {[](Recording& r) { r.model_xml.clear(); }, "t.h5: holds no model"},
+      {[](record::Recording& r) { r.model_xml.clear(); }, "t.h5: holds no model"},
   };
   for (const auto& c : cases) {
-    Recording recording = MakeSampleRecording({});
+    record::Recording recording = MakeSampleRecording({});
     c.spoil(recording);
     try {
       const TraceModel trace(recording, "t.h5");
@@ -120,4 +122,4 @@ TEST(TraceModel, RefusesRecordingsItCannotDraw) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::render

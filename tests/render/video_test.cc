@@ -1,4 +1,4 @@
-#include "render/video.h"
+#include "sidestep/render/video.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,12 +12,12 @@
 #include <string>
 #include <vector>
 
-#include "core/input_error.h"
-#include "render/video_writer.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/render/video_writer.h"
 #include "tests/render/sample_recording.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::render {
 namespace {
 
 using ::testing::HasSubstr;
@@ -208,4 +208,4 @@ TEST_F(ComparisonVideo, StillShowsTheTellingMomentUnlessAsked) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::render

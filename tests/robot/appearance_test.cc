@@ -7,7 +7,7 @@
 
 #include "tests/robot/geom_surface.h"
 
-namespace sidestep {
+namespace sidestep::robot {
 namespace {
 
 // Contact and occupancy use the box of the published experiments, 0.55 m along the way it drives
@@ -41,4 +41,4 @@ TEST(HsrPicture, StaysInsideTheBoxThatIsJudgedAndFillsItsHeight) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::robot

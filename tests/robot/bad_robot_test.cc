@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "core/input_error.h"
-#include "robot/robot_model.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/robot/robot_model.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::robot {
 namespace {
 
 namespace fs = std::filesystem;
@@ -98,4 +98,4 @@ TEST_F(ModelsFolder, RefusesAHugeFile) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::robot

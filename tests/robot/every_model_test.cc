@@ -15,11 +15,11 @@
 #include <string>
 #include <vector>
 
-#include "core/shape.h"
-#include "robot/robot_model.h"
+#include "sidestep/core/shape.h"
+#include "sidestep/robot/robot_model.h"
 #include "tests/robot/geom_surface.h"
 
-namespace sidestep {
+namespace sidestep::robot {
 namespace {
 
 using Eigen::MatrixXd;
@@ -282,4 +282,4 @@ INSTANTIATE_TEST_SUITE_P(Models, EveryModel, ::testing::ValuesIn(RobotModel::Lis
                          [](const auto& test) { return test.param; });
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::robot

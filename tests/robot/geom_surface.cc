@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace sidestep {
+namespace sidestep::robot {
 namespace {
 
 constexpr int kSteps = 64;
@@ -101,4 +101,4 @@ Shape ShapeOf(const mjModel& model, int geom) {
   }
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::robot

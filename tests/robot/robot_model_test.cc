@@ -1,4 +1,4 @@
-#include "robot/robot_model.h"
+#include "sidestep/robot/robot_model.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace sidestep {
+namespace sidestep::robot {
 namespace {
 
 constexpr double kPi = 3.141592653589793;
@@ -115,4 +115,4 @@ TEST(RobotModel, RefusesAConfigurationOfTheWrongShape) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::robot

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "core/input_error.h"
-#include "scenarios/scenario.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/scenarios/scenario.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::scenarios {
 namespace {
 
 namespace fs = std::filesystem;
@@ -89,4 +89,4 @@ TEST_F(ScratchFile, BinaryIsRefusedAtItsLine) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::scenarios

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
-#include "scenarios/scenario.h"
+#include "sidestep/scenarios/scenario.h"
 
-namespace sidestep {
+namespace sidestep::scenarios {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -126,4 +126,4 @@ TEST(MovingObstacle, KeepsItsOrientation) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::scenarios

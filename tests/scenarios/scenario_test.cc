@@ -1,4 +1,4 @@
-#include "scenarios/scenario.h"
+#include "sidestep/scenarios/scenario.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,9 +7,9 @@
 #include <variant>
 #include <vector>
 
-#include "core/input_error.h"
+#include "sidestep/core/input_error.h"
 
-namespace sidestep {
+namespace sidestep::scenarios {
 namespace {
 
 const std::string kFolder = SIDESTEP_SOURCE_DIR "/scenarios";
@@ -237,4 +237,4 @@ TEST(Settings, ThatAreWrongAreBlamedOnThePersonWhoSetThem) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::scenarios

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/scenario.h"
-#include "sdf/tracking/object_tracker.h"
+#include "sidestep/scenarios/scenario.h"
+#include "sidestep/sdf/tracking/object_tracker.h"
 #include "tests/sdf/box_scene.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 using ::testing::Contains;
@@ -20,7 +20,7 @@ using ::testing::Not;
 
 constexpr double kRate_hz = 30, kDuration_s = 3.5;
 
-SceneBox AsBox(const MovingObstacle& obstacle) {
+SceneBox AsBox(const scenarios::MovingObstacle& obstacle) {
   return {std::get<Box>(obstacle.shape).size_m, [obstacle](EpisodeTime t) -> Eigen::Vector3d {
             return PoseAt(obstacle, t).translation();
           }};
@@ -30,13 +30,13 @@ SceneBox AsBox(const MovingObstacle& obstacle) {
 class Watched {
  public:
   explicit Watched(const std::string& behaviour)
-      : scenario_(LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/walkway_behaviours.yaml",
-                               {{"behaviour", behaviour}})) {
+      : scenario_(scenarios::LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/walkway_behaviours.yaml",
+                                          {{"behaviour", behaviour}})) {
     std::vector<SceneBox> boxes;
-    for (const StaticBox& box : scenario_.static_boxes) {
+    for (const scenarios::StaticBox& box : scenario_.static_boxes) {
       boxes.push_back(StillBox(box.size_m, box.X_WO.translation()));
     }
-    for (const MovingObstacle& obstacle : scenario_.moving_obstacles) {
+    for (const scenarios::MovingObstacle& obstacle : scenario_.moving_obstacles) {
       boxes.push_back(AsBox(obstacle));
     }
     ObjectTracker tracker(scenario_.grid, {.max_distance_m = 0.3});
@@ -73,7 +73,7 @@ class Watched {
       return event.id == id && event.what == track_event::kMoved;
     });
   }
-  bool IsInside(const MovingObstacle& obstacle, const Eigen::Vector3d& p_WO) const {
+  bool IsInside(const scenarios::MovingObstacle& obstacle, const Eigen::Vector3d& p_WO) const {
     const GridSpec& grid = scenario_.grid;
     const Eigen::Vector3d half_m = HalfExtents(obstacle.shape);
     const auto [nx, ny, nz] = grid.size;
@@ -85,7 +85,7 @@ class Watched {
     for (const auto& object : tracker.MovingObjects()) {
       if (object->latest().t != t) continue;  // not in this scan
       double nearest_m = INFINITY;
-      for (const MovingObstacle& obstacle : scenario_.moving_obstacles) {
+      for (const scenarios::MovingObstacle& obstacle : scenario_.moving_obstacles) {
         const Eigen::Vector3d p_WBox = object->latest().p_WO + object->box_center_O;
         const Eigen::Vector3d p_WO = PoseAt(obstacle, t).translation();
         nearest_m = std::min(nearest_m, IsInside(obstacle, p_WO) ? (p_WBox - p_WO).norm() : 0);
@@ -94,7 +94,7 @@ class Watched {
     }
   }
 
-  Scenario scenario_;
+  scenarios::Scenario scenario_;
   std::vector<TrackEvent> events_;
   std::size_t num_moving_at_end_ = 0;
   double worst_position_error_m_ = 0;
@@ -210,4 +210,4 @@ TEST(AThingUnseenForLong, IsLostAndComesBackAsAnother) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -8,11 +8,11 @@
 #include <functional>
 #include <vector>
 
-#include "core/grid.h"
-#include "core/observations.h"
-#include "core/time.h"
+#include "sidestep/core/grid.h"
+#include "sidestep/core/observations.h"
+#include "sidestep/core/time.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// An axis-aligned box whose centre moves; absent where `is_there` says so.
 struct SceneBox {
@@ -80,4 +80,4 @@ inline SceneBox WalkwayRobot(double speed_m_s) {
   return MovingBox({0.48, 0.55, 1.2}, {0.4, 2.0, 0.6}, {0, -speed_m_s, 0});
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -1,4 +1,4 @@
-#include "sdf/composite_field.h"
+#include "sidestep/sdf/composite_field.h"
 
 #include <gtest/gtest.h>
 
@@ -11,13 +11,13 @@
 #include <stdexcept>
 #include <vector>
 
-#include "core/shape.h"
-#include "sdf/dense_composite.h"
-#include "sdf/map/distance_transform.h"
-#include "sdf/map/object_field.h"
+#include "sidestep/core/shape.h"
+#include "sidestep/sdf/dense_composite.h"
+#include "sidestep/sdf/map/distance_transform.h"
+#include "sidestep/sdf/map/object_field.h"
 #include "tests/sdf/box_scene.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 constexpr double kCell_m = 0.04;
@@ -366,4 +366,4 @@ TEST(DenseComposite, RefusesObjectsItCannotCopyCellByCell) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sdf

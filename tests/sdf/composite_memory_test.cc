@@ -5,13 +5,13 @@
 #include <memory>
 #include <vector>
 
-#include "sdf/composite_field.h"
-#include "sdf/map/fast_distance_transform.h"
-#include "sdf/map/object_field.h"
+#include "sidestep/sdf/composite_field.h"
+#include "sidestep/sdf/map/fast_distance_transform.h"
+#include "sidestep/sdf/map/object_field.h"
 #include "tests/sdf/box_scene.h"
 #include "tests/support/allocations.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 TEST(CompositeField, OfManyStepsTakesNoMemoryForThem) {
@@ -43,4 +43,4 @@ TEST(CompositeField, OfManyStepsTakesNoMemoryForThem) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sdf

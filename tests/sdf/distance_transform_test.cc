@@ -1,4 +1,4 @@
-#include "sdf/map/distance_transform.h"
+#include "sidestep/sdf/map/distance_transform.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <string>
 #include <tuple>
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 using ::testing::Each;
@@ -164,4 +164,4 @@ TEST(SignedDistance, DoesNotOverflowInTheLargestGridItAccepts) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sdf

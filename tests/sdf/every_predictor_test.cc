@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "sdf/prediction/registry.h"
+#include "sidestep/sdf/prediction/registry.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 TrackedObject SeenAt(const std::vector<double>& times_s,
@@ -143,4 +143,4 @@ TEST(PredictorRegistry, NamesWhatThereIsWhenItIsAskedForSomethingElse) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sdf

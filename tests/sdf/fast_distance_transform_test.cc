@@ -1,4 +1,4 @@
-#include "sdf/map/fast_distance_transform.h"
+#include "sidestep/sdf/map/fast_distance_transform.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,11 +16,11 @@
 #include <utility>
 #include <vector>
 
-#include "sdf/map/fast_distance_transform_envelope.h"
+#include "sidestep/sdf/map/fast_distance_transform_envelope.h"
 #include "tests/sdf/only_target.h"
 #include "tests/support/allocations.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 using ::testing::Each;
@@ -322,4 +322,4 @@ TEST(TransformLineByEnvelope, IsTheMinimumOverAllSources) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -10,11 +10,11 @@
 #include <random>
 #include <vector>
 
-#include "core/shape.h"
-#include "sdf/composite_field.h"
-#include "sdf/map/object_field.h"
+#include "sidestep/core/shape.h"
+#include "sidestep/sdf/composite_field.h"
+#include "sidestep/sdf/map/object_field.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 constexpr double kCell_m = 0.04;
@@ -95,4 +95,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sdf

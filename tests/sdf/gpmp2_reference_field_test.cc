@@ -9,10 +9,10 @@
 #include <memory>
 #include <vector>
 
-#include "sdf/grid_field.h"
-#include "sdf/map/distance_transform.h"
+#include "sidestep/sdf/grid_field.h"
+#include "sidestep/sdf/map/distance_transform.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 struct CellBox {
@@ -98,4 +98,4 @@ TEST(Gpmp2ReferenceField, AnswersThePublishedQueries) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sdf

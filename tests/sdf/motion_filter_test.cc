@@ -1,6 +1,6 @@
 // What filters state of their own error, held against errors that are drawn by the same rules, and
 // against the centroids of voxels.
-#include "sdf/prediction/motion_filter.h"
+#include "sidestep/sdf/prediction/motion_filter.h"
 
 #include <gtest/gtest.h>
 
@@ -12,12 +12,12 @@
 #include <string>
 #include <vector>
 
-#include "sdf/prediction/kalman_ca.h"
-#include "sdf/prediction/kalman_cv.h"
-#include "sdf/prediction/kalman_turn.h"
-#include "sdf/prediction/registry.h"
+#include "sidestep/sdf/prediction/kalman_ca.h"
+#include "sidestep/sdf/prediction/kalman_cv.h"
+#include "sidestep/sdf/prediction/kalman_turn.h"
+#include "sidestep/sdf/prediction/registry.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 constexpr double kRate_hz = 30, kSigma_m = 0.01;
@@ -251,4 +251,4 @@ TEST(Imm, IsNearlyAsGoodAsTheFilterWhoseMotionItSees) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -1,10 +1,10 @@
-#include "sdf/tracking/named_objects.h"
+#include "sidestep/sdf/tracking/named_objects.h"
 
 #include <gtest/gtest.h>
 
-#include "sdf/world_model.h"
+#include "sidestep/sdf/world_model.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 ObjectObservation Seen(const std::string& id, double t_s, const Pose& X_WO) {
@@ -91,4 +91,4 @@ TEST(WorldModel, TakesNamedObjectsForSolidsWhereItDoesNotPredict) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -1,4 +1,4 @@
-#include "sdf/map/nrrd_file.h"
+#include "sidestep/sdf/map/nrrd_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "core/input_error.h"
+#include "sidestep/core/input_error.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 using ::testing::HasSubstr;
@@ -82,4 +82,4 @@ TEST_F(NrrdFile, ThatCannotBeWrittenIsNamed) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sdf

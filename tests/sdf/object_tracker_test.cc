@@ -1,4 +1,4 @@
-#include "sdf/tracking/object_tracker.h"
+#include "sidestep/sdf/tracking/object_tracker.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 
 #include "tests/sdf/box_scene.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 using ::testing::IsEmpty;
@@ -306,4 +306,4 @@ TEST(ObjectTracker, RefusesAnotherGridAndTimeThatDoesNotGoOn) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sdf

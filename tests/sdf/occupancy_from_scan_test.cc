@@ -1,4 +1,4 @@
-#include "sdf/map/occupancy_from_scan.h"
+#include "sidestep/sdf/map/occupancy_from_scan.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "tests/sdf/box_scene.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 TEST(OccupancyFromScan, GivesBackTheCellsWhoseCentresWereScanned) {
@@ -91,4 +91,4 @@ TEST(OccupancyFromScan, FillsNothingThatOnlyEarlierScansShowed) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace sidestep {
+namespace sidestep::sdf {
 
 /// For as long as it lives, Highway picks none but this instruction set.
 class OnlyTarget {
@@ -21,4 +21,4 @@ class OnlyTarget {
   }
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::sdf

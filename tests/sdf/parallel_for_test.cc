@@ -1,4 +1,4 @@
-#include "sdf/parallel_for.h"
+#include "sidestep/sdf/parallel_for.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 class ParallelForOnThreads : public ::testing::TestWithParam<int> {};
@@ -37,4 +37,4 @@ TEST(ParallelFor, NeedsAThread) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -1,4 +1,4 @@
-#include "sdf/placed_composite.h"
+#include "sidestep/sdf/placed_composite.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "core/shape.h"
-#include "sdf/map/distance_transform.h"
-#include "sdf/map/object_field.h"
+#include "sidestep/core/shape.h"
+#include "sidestep/sdf/map/distance_transform.h"
+#include "sidestep/sdf/map/object_field.h"
 #include "tests/sdf/only_target.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 constexpr double kCell_m = 0.05;
@@ -214,4 +214,4 @@ TEST(AlignedVector, BeginsAtACacheLine) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sdf

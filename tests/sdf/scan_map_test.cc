@@ -1,11 +1,11 @@
-#include "sdf/map/scan_map.h"
+#include "sidestep/sdf/map/scan_map.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 const GridSpec kGrid = {{-0.95, -0.95, -0.95}, 0.1, {20, 20, 20}};
@@ -158,4 +158,4 @@ TEST(FillObjects, FillsTheCellsWhoseCentresAreInsideATurnedShape) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sdf

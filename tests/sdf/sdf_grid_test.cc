@@ -1,4 +1,4 @@
-#include "sdf/map/sdf_grid.h"
+#include "sidestep/sdf/map/sdf_grid.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "sdf/grid_field.h"
+#include "sidestep/sdf/grid_field.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 // 0.04 and -1 are not exact in binary: the far centres are where rounding would show.
@@ -175,4 +175,4 @@ TEST(GridField, RefusesToClampAtNothing) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -1,4 +1,4 @@
-#include "sdf/tracking/segmentation.h"
+#include "sidestep/sdf/tracking/segmentation.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 // Brute force: every pair of filled cells that touch gets the same label, until nothing changes.
@@ -146,4 +146,4 @@ TEST(Segmentation, CutsOutAComponentWhereItStandsAndWithoutItsNeighbours) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -1,4 +1,4 @@
-#include "sdf/world_model.h"
+#include "sidestep/sdf/world_model.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "core/shape.h"
+#include "sidestep/core/shape.h"
 #include "tests/sdf/box_scene.h"
 
-namespace sidestep {
+namespace sidestep::sdf {
 namespace {
 
 using ::testing::HasSubstr;
@@ -273,4 +273,4 @@ TEST(GrownObjects, GoOnToTheClampWithoutAJump) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sdf

@@ -1,4 +1,4 @@
-#include "sim/geom_distance.h"
+#include "sidestep/sim/geom_distance.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <limits>
 #include <ostream>
 
-#include "core/shape.h"
+#include "sidestep/core/shape.h"
 #include "tests/sim/small_model.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 namespace {
 
 using Eigen::Vector3d;
@@ -320,4 +320,4 @@ TEST(GeomDistance, SaysHowDeepAndWhereTwoSolidsTouch) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sim

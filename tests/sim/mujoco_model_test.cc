@@ -1,4 +1,4 @@
-#include "sim/mujoco_model.h"
+#include "sidestep/sim/mujoco_model.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,10 +9,10 @@
 #include <thread>
 #include <vector>
 
-#include "core/input_error.h"
+#include "sidestep/core/input_error.h"
 #include "tests/sim/small_model.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 namespace {
 
 constexpr const char* kBall = "<body><freejoint/><geom size='0.1'/></body>";
@@ -58,4 +58,4 @@ TEST(MujocoModel, LoadsInManyThreadsAtOnce) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -1,17 +1,17 @@
-#include "sim/occupancy_sensor.h"
+#include "sidestep/sim/occupancy_sensor.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "sim/simulation.h"
+#include "sidestep/sim/simulation.h"
 #include "tests/sim/two_link.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 namespace {
 
-Scenario BusyScenario() {
-  Scenario scenario = TwoLinkScenario();
+scenarios::Scenario BusyScenario() {
+  scenarios::Scenario scenario = TwoLinkScenario();
   scenario.static_boxes = {{"shelf", Pose::Translation({0, 0.7, 0.4}), {0.4, 0.2, 0.3}},
                            {"pole", Pose::Translation({-0.5, -0.5, 0.5}), {0.1, 0.1, 1}}};
   scenario.moving_obstacles = {
@@ -30,16 +30,17 @@ OccupancyGrid GridOf(const Scan& scan, const GridSpec& spec) {
 }
 
 TEST(OccupancySensor, SeesTheCentresOfTheCellsThatAreFilledAtItsTime) {
-  const Scenario scenario = BusyScenario();
+  const scenarios::Scenario scenario = BusyScenario();
   Simulation simulation(scenario, TwoLink(scenario), kTestModels);
   for (int k = 0; k < 20; ++k) {
     simulation.robot().AdvanceTo(simulation.sensor().NextDue());
     const std::optional<Scan> scan = simulation.sensor().Read();
     ASSERT_TRUE(scan.has_value());
     // The world as the scenario has it at the scan's time, rasterised from nothing.
-    Scenario then = scenario;
-    for (MovingObstacle& obstacle : then.moving_obstacles) {
-      std::get<LinearMotion>(obstacle.motion).start_m = PoseAt(obstacle, scan->t).translation();
+    scenarios::Scenario then = scenario;
+    for (scenarios::MovingObstacle& obstacle : then.moving_obstacles) {
+      std::get<scenarios::LinearMotion>(obstacle.motion).start_m =
+          PoseAt(obstacle, scan->t).translation();
     }
     const Simulation still(then, TwoLink(then), kTestModels);
     const OccupancyGrid wanted =
@@ -50,7 +51,7 @@ TEST(OccupancySensor, SeesTheCentresOfTheCellsThatAreFilledAtItsTime) {
 }
 
 TEST(OccupancySensor, CapturesAtItsRateOnTicksOfTheWorld) {
-  const Scenario scenario = BusyScenario();
+  const scenarios::Scenario scenario = BusyScenario();
   Simulation simulation(scenario, TwoLink(scenario), kTestModels);
   for (int k = 0; k < 40; ++k) {
     const EpisodeTime due = simulation.sensor().NextDue();
@@ -68,7 +69,7 @@ TEST(OccupancySensor, CapturesAtItsRateOnTicksOfTheWorld) {
 }
 
 TEST(OccupancySensor, SkipsCapturesThatWereMissed) {
-  const Scenario scenario = BusyScenario();
+  const scenarios::Scenario scenario = BusyScenario();
   Simulation simulation(scenario, TwoLink(scenario), kTestModels);
   simulation.robot().AdvanceTo(EpisodeTime(0.25));
   EXPECT_EQ(simulation.sensor().Read()->t, EpisodeTime(0.25));
@@ -77,4 +78,4 @@ TEST(OccupancySensor, SkipsCapturesThatWereMissed) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -4,26 +4,28 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/simulation.h"
+#include "sidestep/sim/simulation.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 namespace {
 
 const std::string kModels = SIDESTEP_SOURCE_DIR "/models";
 
-Scenario Walkway() { return LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/hsr_walkway.yaml"); }
+scenarios::Scenario Walkway() {
+  return scenarios::LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/hsr_walkway.yaml");
+}
 
-RobotModel Panda(const Scenario& scenario) {
-  return RobotModel::Load(kModels, scenario.robot, scenario.X_WB);
+robot::RobotModel Panda(const scenarios::Scenario& scenario) {
+  return robot::RobotModel::Load(kModels, scenario.robot, scenario.X_WB);
 }
 
 class EveryConfiguration : public testing::TestWithParam<std::string> {};
 
 TEST_P(EveryConfiguration, IsHeldUntouched) {
-  Scenario scenario = Walkway();
+  scenarios::Scenario scenario = Walkway();
   scenario.moving_obstacles.clear();
   scenario.start_name = GetParam();
-  const RobotModel robot = Panda(scenario);
+  const robot::RobotModel robot = Panda(scenario);
   Simulation simulation(scenario, robot, kModels);
   simulation.robot().AdvanceTo(EpisodeTime(1));
   const Eigen::VectorXd error = simulation.robot().Read().q - robot.configurations().at(GetParam());
@@ -42,9 +44,9 @@ INSTANTIATE_TEST_SUITE_P(Panda, EveryConfiguration,
                          [](const auto& test) { return test.param; });
 
 TEST(Panda, FollowsAQuarterTurnInTwoSeconds) {
-  Scenario scenario = Walkway();
+  scenarios::Scenario scenario = Walkway();
   scenario.moving_obstacles.clear();
-  const RobotModel robot = Panda(scenario);
+  const robot::RobotModel robot = Panda(scenario);
   Simulation simulation(scenario, robot, kModels);
   const Eigen::VectorXd q_start = robot.configurations().at("right_ready");
   const Eigen::VectorXd q_goal = robot.configurations().at("ready");  // a quarter turn of joint 1
@@ -82,7 +84,7 @@ TEST(Panda, FollowsAQuarterTurnInTwoSeconds) {
 }
 
 TEST(Panda, IsTouchedByTheHsrWhenItReachesAcrossTheWalkway) {
-  Scenario scenario = Walkway();
+  scenarios::Scenario scenario = Walkway();
   scenario.start_name = "table_forward";
   Simulation simulation(scenario, Panda(scenario), kModels);
   simulation.robot().AdvanceTo(EpisodeTime(1.6));
@@ -99,4 +101,4 @@ TEST(Panda, IsTouchedByTheHsrWhenItReachesAcrossTheWalkway) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sim

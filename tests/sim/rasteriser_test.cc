@@ -1,4 +1,4 @@
-#include "sim/rasteriser.h"
+#include "sidestep/sim/rasteriser.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,11 +7,11 @@
 #include <functional>
 #include <ostream>
 
-#include "core/shape.h"
-#include "sim/mujoco_pose.h"
+#include "sidestep/core/shape.h"
+#include "sidestep/sim/mujoco_pose.h"
 #include "tests/sim/small_model.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 namespace {
 
 using Eigen::Vector3d;
@@ -197,4 +197,4 @@ TEST(OccupancyRasteriser, LeavesOutRobotFloorAndPictures) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -1,4 +1,4 @@
-#include "sim/simulated_truth.h"
+#include "sidestep/sim/simulated_truth.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,15 +6,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/simulation.h"
+#include "sidestep/sim/simulation.h"
 #include "tests/sim/two_link.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 namespace {
 
 using Eigen::Vector3d;
 
-std::vector<TruthSample> Watch(const Scenario& scenario, double duration_s) {
+std::vector<TruthSample> Watch(const scenarios::Scenario& scenario, double duration_s) {
   Simulation simulation(scenario, TwoLink(scenario), kTestModels);
   simulation.robot().AdvanceTo(EpisodeTime(duration_s));
   return simulation.truth().TakeSamples();
@@ -27,7 +27,7 @@ const TruthSample* FirstContact(const std::vector<TruthSample>& samples) {
 }
 
 TEST(SimulatedTruth, SamplesAtAHundredHertzFromTheStart) {
-  Scenario scenario = TwoLinkScenario();
+  scenarios::Scenario scenario = TwoLinkScenario();
   scenario.moving_obstacles = {Passing("cart", Sphere{0.1}, {2, 0, 1}, {0, 1, 0}, 0.7)};
   Simulation simulation(scenario, TwoLink(scenario), kTestModels);
   EXPECT_THAT(simulation.truth().TakeSamples(), testing::SizeIs(1));
@@ -44,7 +44,7 @@ TEST(SimulatedTruth, SamplesAtAHundredHertzFromTheStart) {
 }
 
 TEST(SimulatedTruth, KnowsWhereObstaclesWillBe) {
-  Scenario scenario = TwoLinkScenario();
+  scenarios::Scenario scenario = TwoLinkScenario();
   scenario.moving_obstacles = {Passing("cart", Sphere{0.1}, {2, 0, 1}, {0, 1, 0}, 0.7)};
   Simulation simulation(scenario, TwoLink(scenario), kTestModels);
   const auto later = simulation.truth().ObstaclesAt(EpisodeTime(2));
@@ -69,7 +69,7 @@ class SomethingComes : public testing::TestWithParam<Approach> {};
 TEST_P(SomethingComes, AndContactIsSeenInThatVeryMillisecond) {
   const Approach& a = GetParam();
   for (const double speed_m_s : {0.3, 1.4}) {
-    Scenario scenario = TwoLinkScenario();
+    scenarios::Scenario scenario = TwoLinkScenario();
     scenario.floor_m = -1;
     scenario.moving_obstacles = {Passing("guest", a.shape, a.start_m, a.direction, speed_m_s)};
     const double t_contact = a.gap_m / speed_m_s;
@@ -107,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return test.param.name; });
 
 TEST(SimulatedTruth, ReportsWhereAndHowDeep) {
-  Scenario scenario = TwoLinkScenario();
+  scenarios::Scenario scenario = TwoLinkScenario();
   scenario.moving_obstacles = {Passing("guest", Sphere{0.1}, {0.74, 0, 0.3}, {-1, 0, 0}, 0)};
   const std::vector<TruthSample> samples = Watch(scenario, 0);
   ASSERT_THAT(samples, testing::SizeIs(1));
@@ -119,7 +119,7 @@ TEST(SimulatedTruth, ReportsWhereAndHowDeep) {
 
 TEST(SimulatedTruth, SeesABriefContactBetweenItsSamples) {
   // A bead that rushes past and is over the ball for less than 10 ms.
-  Scenario scenario = TwoLinkScenario();
+  scenarios::Scenario scenario = TwoLinkScenario();
   scenario.moving_obstacles = {Passing("bead", Sphere{0.005}, {0.6, 1.0, 0.352}, {0, -1, 0}, 8)};
   const std::vector<TruthSample> samples = Watch(scenario, 0.3);
   const auto touching = std::count_if(samples.begin(), samples.end(),
@@ -133,7 +133,7 @@ TEST(SimulatedTruth, SeesABriefContactBetweenItsSamples) {
 TEST(SimulatedTruth, JudgesTheFixedBaseAgainstWhatMoves) {
   // MuJoCo itself never looks for contacts between the foot, which is bolted to the world, and an
   // obstacle that follows a path.
-  Scenario scenario = TwoLinkScenario();
+  scenarios::Scenario scenario = TwoLinkScenario();
   scenario.floor_m = -1;
   scenario.moving_obstacles = {Passing("low", Sphere{0.05}, {-1, 0, 0.1}, {1, 0, 0}, 1)};
   const std::vector<TruthSample> samples = Watch(scenario, 1);
@@ -144,7 +144,7 @@ TEST(SimulatedTruth, JudgesTheFixedBaseAgainstWhatMoves) {
 }
 
 TEST(SimulatedTruth, IgnoresTheMountForTheLinksThatStandOnIt) {
-  Scenario scenario = TwoLinkScenario();
+  scenarios::Scenario scenario = TwoLinkScenario();
   // The block reaches up into the turret (0.25 to 0.35 m), but not to the bar.
   scenario.static_boxes = {{"block", Pose::Translation({0, 0, 0.13}), {0.14, 0.14, 0.26}}};
   scenario.mount = "block";
@@ -161,7 +161,7 @@ TEST(SimulatedTruth, IgnoresTheMountForTheLinksThatStandOnIt) {
 }
 
 TEST(SimulatedTruth, MeasuresToTheFloor) {
-  Scenario scenario = TwoLinkScenario();
+  scenarios::Scenario scenario = TwoLinkScenario();
   scenario.q_start = Eigen::Vector2d(0, -0.3);
   scenario.floor_m = -0.1;
   const std::vector<TruthSample> samples = Watch(scenario, 0);
@@ -171,7 +171,7 @@ TEST(SimulatedTruth, MeasuresToTheFloor) {
 }
 
 TEST(SimulatedTruth, CallsTheRobotItselfWhenItsOwnLinksTouch) {
-  Scenario scenario = TwoLinkScenario();
+  scenarios::Scenario scenario = TwoLinkScenario();
   scenario.q_start = Eigen::Vector2d(0, -1.45);  // the bar hangs down along the foot
   scenario.floor_m = -1;
   const std::vector<TruthSample> samples = Watch(scenario, 0);
@@ -181,4 +181,4 @@ TEST(SimulatedTruth, CallsTheRobotItselfWhenItsOwnLinksTouch) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sim

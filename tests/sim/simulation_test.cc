@@ -1,4 +1,4 @@
-#include "sim/simulation.h"
+#include "sidestep/sim/simulation.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/input_error.h"
+#include "sidestep/core/input_error.h"
 #include "tests/sim/two_link.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -40,7 +40,8 @@ struct Log {
 };
 
 // Everything that happens while the robot is told to move along `motion` from `start_s` on.
-Log RunMotion(const Scenario& scenario, const Trajectory& motion, double start_s, double end_s) {
+Log RunMotion(const scenarios::Scenario& scenario, const Trajectory& motion, double start_s,
+              double end_s) {
   Simulation simulation(scenario, TwoLink(scenario), kTestModels);
   simulation.robot().Submit(motion, EpisodeTime(start_s));
   simulation.robot().AdvanceTo(EpisodeTime(end_s));
@@ -64,15 +65,15 @@ void ExpectSameBits(const Log& a, const Log& b) {
 }
 
 // The arm turns into a post that drives through.
-Scenario CrashScenario() {
-  Scenario scenario = TwoLinkScenario();
+scenarios::Scenario CrashScenario() {
+  scenarios::Scenario scenario = TwoLinkScenario();
   scenario.moving_obstacles = {
       Passing("post", Cylinder{0.05, 1}, {0.4, 0.8, 0.4}, {0, -1, 0}, 0.6)};
   return scenario;
 }
 
 TEST(Simulation, HoldsItsPoseAgainstGravity) {
-  Scenario scenario = TwoLinkScenario();
+  scenarios::Scenario scenario = TwoLinkScenario();
   scenario.q_start = Eigen::Vector2d(0.3, 0.4);
   Simulation simulation(scenario, TwoLink(scenario), kTestModels);
   simulation.robot().AdvanceTo(EpisodeTime(2));
@@ -85,7 +86,7 @@ TEST(Simulation, HoldsItsPoseAgainstGravity) {
 }
 
 TEST(Simulation, FollowsASmoothMotion) {
-  const Scenario scenario = TwoLinkScenario();
+  const scenarios::Scenario scenario = TwoLinkScenario();
   const Eigen::Vector2d q_goal(kPi / 2, 0.5);
   const Trajectory motion = SmoothMotion(scenario.q_start, q_goal, 2);
   const Log run = RunMotion(scenario, motion, 0.1, 2.6);
@@ -101,7 +102,7 @@ TEST(Simulation, FollowsASmoothMotion) {
 
 TEST(Simulation, NeverExceedsATorqueLimit) {
   // Swept off its path by something that does not yield, the arm would need far more.
-  Scenario scenario = TwoLinkScenario();
+  scenarios::Scenario scenario = TwoLinkScenario();
   scenario.moving_obstacles = {
       Passing("ram", Box{{0.3, 0.3, 0.3}}, {0.5, 0.6, 0.3}, {0, -1, 0}, 1)};
   const Log run =
@@ -124,7 +125,7 @@ TEST(Simulation, PushesOnAfterAContact) {
 }
 
 TEST(Simulation, FollowsWhatWasSubmittedBeforeUntilANewMotionStarts) {
-  const Scenario scenario = TwoLinkScenario();
+  const scenarios::Scenario scenario = TwoLinkScenario();
   const Trajectory first = SmoothMotion(scenario.q_start, Eigen::Vector2d(0.6, 0), 1);
   const Trajectory second =
       SmoothMotion(Sample(first, HorizonOffset(0.5)).q, Eigen::Vector2d(0.3, 0.4), 1);
@@ -143,7 +144,7 @@ TEST(Simulation, FollowsWhatWasSubmittedBeforeUntilANewMotionStarts) {
 }
 
 TEST(Simulation, DropsWhatWasToStartLaterThanANewMotion) {
-  const Scenario scenario = TwoLinkScenario();
+  const scenarios::Scenario scenario = TwoLinkScenario();
   Simulation simulation(scenario, TwoLink(scenario), kTestModels);
   const auto to = [&](double q) {
     return SmoothMotion(scenario.q_start, Eigen::Vector2d(q, 0), 0.5);
@@ -155,7 +156,7 @@ TEST(Simulation, DropsWhatWasToStartLaterThanANewMotion) {
 }
 
 TEST(Simulation, JoinsAMotionThatHasAlreadyBegun) {
-  const Scenario scenario = TwoLinkScenario();
+  const scenarios::Scenario scenario = TwoLinkScenario();
   Simulation simulation(scenario, TwoLink(scenario), kTestModels);
   simulation.robot().AdvanceTo(EpisodeTime(0.4));
   simulation.robot().Submit(SmoothMotion(scenario.q_start, Eigen::Vector2d(0.8, 0.1), 1),
@@ -165,7 +166,7 @@ TEST(Simulation, JoinsAMotionThatHasAlreadyBegun) {
 }
 
 TEST(Simulation, BrakesAndStaysWhenToldToHold) {
-  const Scenario scenario = TwoLinkScenario();
+  const scenarios::Scenario scenario = TwoLinkScenario();
   Simulation simulation(scenario, TwoLink(scenario), kTestModels);
   simulation.robot().Submit(SmoothMotion(scenario.q_start, Eigen::Vector2d(2, 0), 1),
                             EpisodeTime(0));
@@ -182,7 +183,7 @@ TEST(Simulation, BrakesAndStaysWhenToldToHold) {
 }
 
 TEST(Simulation, AdvancesToTheFirstTickThatIsNotBefore) {
-  const Scenario scenario = TwoLinkScenario();
+  const scenarios::Scenario scenario = TwoLinkScenario();
   Simulation simulation(scenario, TwoLink(scenario), kTestModels);
   for (const auto& [t, tick] : {std::pair(0.0101, 0.011), {0.1 + 0.2, 0.3}, {0.2, 0.3}}) {
     simulation.robot().AdvanceTo(EpisodeTime(t));
@@ -191,7 +192,7 @@ TEST(Simulation, AdvancesToTheFirstTickThatIsNotBefore) {
 }
 
 TEST(Simulation, RefusesATrajectoryThatDoesNotFit) {
-  const Scenario scenario = TwoLinkScenario();
+  const scenarios::Scenario scenario = TwoLinkScenario();
   Simulation simulation(scenario, TwoLink(scenario), kTestModels);
   Trajectory motion = SmoothMotion(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones(), 1);
   EXPECT_THROW(simulation.robot().Submit(motion, EpisodeTime(0)), std::invalid_argument);
@@ -207,7 +208,7 @@ TEST(Simulation, GivesTheSameBitsAgain) {
 }
 
 TEST(Simulation, IsNotInfluencedByAnotherOneBesideIt) {
-  const Scenario scenario = CrashScenario();
+  const scenarios::Scenario scenario = CrashScenario();
   const Trajectory motion = SmoothMotion(Eigen::Vector2d(0, 0), Eigen::Vector2d(1.2, 0.2), 1);
   const Log alone = RunMotion(scenario, motion, 0.1, 2);
   Simulation simulation(scenario, TwoLink(scenario), kTestModels);
@@ -227,9 +228,9 @@ TEST(Simulation, IsNotInfluencedByAnotherOneBesideIt) {
 
 TEST(Simulation, FailsTheRunWhenThePhysicsDiverges) {
   // A controller of this stiffness is unstable at 1 kHz, and its motors have no limit.
-  Scenario scenario = TwoLinkScenario();
+  scenarios::Scenario scenario = TwoLinkScenario();
   scenario.robot = "explosive";
-  const RobotModel robot = RobotModel::Load(kTestModels, "explosive", scenario.X_WB);
+  const robot::RobotModel robot = robot::RobotModel::Load(kTestModels, "explosive", scenario.X_WB);
   Simulation simulation(scenario, robot, kTestModels);
   simulation.robot().Submit(SmoothMotion(scenario.q_start, Eigen::Vector2d(0.5, 0.5), 1),
                             EpisodeTime(0));
@@ -240,7 +241,7 @@ TEST(Simulation, FailsTheRunWhenThePhysicsDiverges) {
 }
 
 TEST(Simulation, SaysWhatOfTheScenarioDoesNotFit) {
-  Scenario scenario = TwoLinkScenario();
+  scenarios::Scenario scenario = TwoLinkScenario();
   scenario.q_start = {};
   scenario.start_name = "asleep";
   scenario.lines["task.start"] = 9;
@@ -258,4 +259,4 @@ TEST(Simulation, SaysWhatOfTheScenarioDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sim

@@ -4,10 +4,10 @@
 #include <random>
 #include <string>
 
-#include "core/pose.h"
-#include "sim/mujoco_model.h"
+#include "sidestep/core/pose.h"
+#include "sidestep/sim/mujoco_model.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 
 /// A model from the inside of <worldbody> (and what else belongs to the top), at its first pose.
 struct SmallModel {
@@ -46,4 +46,4 @@ inline Pose RandomPose(double reach_m, std::mt19937* generator) {
   return Pose(Eigen::Quaterniond(q), p);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

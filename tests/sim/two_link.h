@@ -4,16 +4,16 @@
 #include <string>
 #include <utility>
 
-#include "robot/robot_model.h"
-#include "scenarios/scenario.h"
+#include "sidestep/robot/robot_model.h"
+#include "sidestep/scenarios/scenario.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 
 inline const std::string kTestModels = SIDESTEP_SOURCE_DIR "/tests/sim/models";
 
 /// The robot of tests/sim/models/two_link on an empty floor: base at the origin, arm level along x.
-inline Scenario TwoLinkScenario() {
-  Scenario scenario;
+inline scenarios::Scenario TwoLinkScenario() {
+  scenarios::Scenario scenario;
   scenario.name = "two_link";
   scenario.file = "two_link.yaml";
   scenario.robot = "two_link";
@@ -24,20 +24,21 @@ inline Scenario TwoLinkScenario() {
   return scenario;
 }
 
-inline RobotModel TwoLink(const Scenario& scenario) {
-  return RobotModel::Load(kTestModels, "two_link", scenario.X_WB);
+inline robot::RobotModel TwoLink(const scenarios::Scenario& scenario) {
+  return robot::RobotModel::Load(kTestModels, "two_link", scenario.X_WB);
 }
 
 /// An obstacle that moves along a line for good.
-inline MovingObstacle Passing(std::string name, Shape shape, const Eigen::Vector3d& start_m,
-                              const Eigen::Vector3d& direction, double speed_m_s) {
-  MovingObstacle obstacle;
+inline scenarios::MovingObstacle Passing(std::string name, Shape shape,
+                                         const Eigen::Vector3d& start_m,
+                                         const Eigen::Vector3d& direction, double speed_m_s) {
+  scenarios::MovingObstacle obstacle;
   obstacle.name = std::move(name);
   obstacle.shape = shape;
   obstacle.rpy_rad = Eigen::Vector3d::Zero();
-  obstacle.motion = LinearMotion{start_m, direction.normalized(), speed_m_s,
-                                 std::numeric_limits<double>::infinity()};
+  obstacle.motion = scenarios::LinearMotion{start_m, direction.normalized(), speed_m_s,
+                                            std::numeric_limits<double>::infinity()};
   return obstacle;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::sim

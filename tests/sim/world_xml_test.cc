@@ -1,4 +1,4 @@
-#include "sim/world_xml.h"
+#include "sidestep/sim/world_xml.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,14 +6,14 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/input_error.h"
-#include "sim/mujoco_pose.h"
-#include "sim/world_geoms.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/sim/mujoco_pose.h"
+#include "sidestep/sim/world_geoms.h"
 #include "tests/sim/small_model.h"
 #include "tests/sim/two_link.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::sim {
 namespace {
 
 using Eigen::Vector3d;
@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 struct Built {
   MujocoModelPtr model;
   MujocoDataPtr data;
-  explicit Built(const Scenario& scenario)
+  explicit Built(const scenarios::Scenario& scenario)
       : model(LoadMujocoModel(BuildWorldXml(scenario, {"foot", "turret"}, kTestModels), "world")),
         data(MakeMujocoData(*model)) {
     mj_forward(model.get(), data.get());
@@ -43,8 +43,8 @@ void ExpectSamePose(const Pose& a, const Pose& b) {
   EXPECT_LT(difference.rotation().vec().norm(), 1e-12);
 }
 
-Scenario FullScenario() {
-  Scenario scenario = TwoLinkScenario();
+scenarios::Scenario FullScenario() {
+  scenarios::Scenario scenario = TwoLinkScenario();
   scenario.X_WB = Pose::FromRollPitchYaw({0.1, -0.2, 0.3}, {0.4, 0.5, 0.6});
   scenario.static_boxes = {
       {"table", Pose::FromRollPitchYaw({0, 0, 0.5}, {1, 2, 0.2}), {0.8, 1.2, 0.4}},
@@ -63,18 +63,18 @@ Scenario FullScenario() {
 }
 
 TEST(WorldXml, PutsEverythingWhereTheScenarioHasIt) {
-  const Scenario scenario = FullScenario();
+  const scenarios::Scenario scenario = FullScenario();
   const Built world(scenario);
   ExpectSamePose(world.BodyPose(kRobotBody), scenario.X_WB);
   ExpectSamePose(world.BodyPose("turret"), scenario.X_WB * Pose::Translation({0, 0, 0.3}));
-  for (const StaticBox& box : scenario.static_boxes) {
+  for (const scenarios::StaticBox& box : scenario.static_boxes) {
     ExpectSamePose(world.BodyPose(box.name), box.X_WO);
     const int geom = world.Id(mjOBJ_GEOM, box.name);
     EXPECT_EQ(world.model->geom_type[geom], mjGEOM_BOX);
     EXPECT_LT((2 * Eigen::Map<Vector3d>(world.model->geom_size + 3 * geom) - box.size_m).norm(),
               1e-12);
   }
-  for (const MovingObstacle& obstacle : scenario.moving_obstacles) {
+  for (const scenarios::MovingObstacle& obstacle : scenario.moving_obstacles) {
     ExpectSamePose(world.BodyPose(obstacle.name), PoseAt(obstacle, EpisodeTime(0)));
     EXPECT_GE(world.model->body_mocapid[world.Id(mjOBJ_BODY, obstacle.name)], 0);
     EXPECT_GE(world.Id(mjOBJ_GEOM, obstacle.name), 0);
@@ -84,12 +84,12 @@ TEST(WorldXml, PutsEverythingWhereTheScenarioHasIt) {
 }
 
 TEST(WorldXml, MakesSolidsOfTheShapesOfTheScenario) {
-  const Scenario scenario = FullScenario();
+  const scenarios::Scenario scenario = FullScenario();
   const Built world(scenario);
   const int types[] = {mjGEOM_BOX, mjGEOM_SPHERE, mjGEOM_CAPSULE, mjGEOM_CYLINDER,
                        mjGEOM_ELLIPSOID};
   for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
-    const MovingObstacle& obstacle = scenario.moving_obstacles[i];
+    const scenarios::MovingObstacle& obstacle = scenario.moving_obstacles[i];
     const int geom = world.Id(mjOBJ_GEOM, obstacle.name);
     EXPECT_EQ(world.model->geom_type[geom], types[i]);
     // MuJoCo's ray from far along each axis meets the surface where core/shape.h has it.
@@ -157,7 +157,7 @@ TEST(WorldXml, ExcludesContactsOfTheMountLinksWithTheMountOnly) {
 }
 
 TEST(WorldXml, AimsItsCamerasAtTheRobotsWorkspace) {
-  const Scenario scenario = FullScenario();
+  const scenarios::Scenario scenario = FullScenario();
   const Built world(scenario);
   const Vector3d target = scenario.X_WB * Vector3d(0.35, 0, 0.2);
   for (const char* name : {kOverviewCamera, kTopCamera}) {
@@ -178,7 +178,7 @@ class BrokenModel : public testing::Test {
 
   std::string MessageFor(const std::string& text) const {
     std::ofstream(directory_ + "/arm/arm.xml") << text;
-    Scenario scenario = TwoLinkScenario();
+    scenarios::Scenario scenario = TwoLinkScenario();
     scenario.robot = "arm";
     try {
       BuildWorldXml(scenario, {}, directory_);
@@ -205,7 +205,7 @@ TEST_F(BrokenModel, IsRefusedWithItsLine) {
 }
 
 TEST(WorldXml, RefusesTheNameOfAPartOfTheRobot) {
-  Scenario scenario = FullScenario();
+  scenarios::Scenario scenario = FullScenario();
   scenario.moving_obstacles[1].name = "turret";
   scenario.lines["moving_obstacles[1].name"] = 21;
   EXPECT_THAT([&] { BuildWorldXml(scenario, {}, kTestModels); },
@@ -215,7 +215,7 @@ TEST(WorldXml, RefusesTheNameOfAPartOfTheRobot) {
 }
 
 TEST(WorldXml, SaysWhichModelIsMissing) {
-  Scenario scenario = FullScenario();
+  scenarios::Scenario scenario = FullScenario();
   scenario.moving_obstacles[0].appearance = "ghost";
   scenario.lines["moving_obstacles[0].appearance"] = 17;
   EXPECT_THAT([&] { BuildWorldXml(scenario, {}, kTestModels); },
@@ -228,4 +228,4 @@ TEST(WorldXml, SaysWhichModelIsMissing) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sim

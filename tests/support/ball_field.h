@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
-#include "sdf/distance_field.h"
+#include "sidestep/sdf/distance_field.h"
 
 namespace sidestep {
 
 /// The field of one ball that moves at a constant velocity, in closed form and without bounds.
-class BallField final : public DistanceField {
+class BallField final : public sdf::DistanceField {
  public:
   /// @param p_WO_start where its centre is at time 0 [m]; @param v_WO its velocity [m/s].
   BallField(const Eigen::Vector3d& p_WO_start, const Eigen::Vector3d& v_WO, double radius_m,
@@ -16,7 +16,7 @@ class BallField final : public DistanceField {
 
   Eigen::Vector3d CenterAt(EpisodeTime t) const { return p_WO_start_ + t.seconds() * v_WO_; }
 
-  DistanceSample Sample(const Eigen::Vector3d& p_WQ, EpisodeTime t) const override {
+  sdf::DistanceSample Sample(const Eigen::Vector3d& p_WQ, EpisodeTime t) const override {
     const Eigen::Vector3d p_OQ_W = p_WQ - CenterAt(t);
     const double norm = p_OQ_W.norm();
     if (norm - radius_m_ >= max_m_) return {max_m_, Eigen::Vector3d::Zero(), true};
@@ -25,12 +25,12 @@ class BallField final : public DistanceField {
   }
 
   void SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime t,
-                  DistanceSamples& samples) const override {
+                  sdf::DistanceSamples& samples) const override {
     samples.distance_m.resize(p_WQ.cols());
     samples.gradient_W.resize(3, p_WQ.cols());
     samples.num_outside = 0;
     for (Eigen::Index s = 0; s < p_WQ.cols(); ++s) {
-      const DistanceSample sample = Sample(p_WQ.col(s), t);
+      const sdf::DistanceSample sample = Sample(p_WQ.col(s), t);
       samples.distance_m(s) = sample.distance_m;
       samples.gradient_W.col(s) = sample.gradient_W;
     }

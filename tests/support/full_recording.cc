@@ -14,8 +14,8 @@ Pose TurnedPose(double angle, double x) {
 
 }  // namespace
 
-Recording FullRecording(int num_control) {
-  Recording recording;
+record::Recording FullRecording(int num_control) {
+  record::Recording recording;
   recording.header = {{"knowledge", "prediction"}, {"scenario", "allée à piétons"}, {"empty", ""}};
   recording.scenario_yaml = "name: test\nspeed: 1.4\n";
   recording.model_xml = "<mujoco/>";
@@ -82,12 +82,12 @@ Recording FullRecording(int num_control) {
   recording.events = {{EpisodeTime(0.1), "appeared", 1, 0, {0.4, 2, 0.6}},
                       {EpisodeTime(0.3), "merged", 2, 1, {0.5, 1, 0.7}}};
   for (int i = 0; i < 3; ++i) {
-    ObservationRecord observation;
+    record::ObservationRecord observation;
     observation.t = EpisodeTime(0.1 * i);
     observation.t_arrival = EpisodeTime(0.1 * i + 0.05);
     for (int k = 0; k < 2 * i; ++k) observation.changed_cells.push_back(100 * i + k);
     for (int k = 0; k < 2 - i; ++k) {
-      SeenObject object;
+      record::SeenObject object;
       object.id = k == 0 ? "trolley" : "ball";
       object.X_WO = TurnedPose(0.2 * k, i + k);
       object.covariance.setConstant(0.1 * i + k);

@@ -6,10 +6,10 @@
 #include <memory>
 #include <vector>
 
-#include "core/grid.h"
-#include "sdf/distance_field.h"
-#include "sdf/map/distance_transform.h"
-#include "sdf/map/sdf_grid.h"
+#include "sidestep/core/grid.h"
+#include "sidestep/sdf/distance_field.h"
+#include "sidestep/sdf/map/distance_transform.h"
+#include "sidestep/sdf/map/sdf_grid.h"
 
 namespace sidestep::gpmp2_reference {
 
@@ -49,30 +49,31 @@ inline OccupancyGrid WorldAtStep(int step) {
 
 /// One exact field a step, distances between cell centres. What lies between support states k - 1
 /// and k sees the field of k, as in the reference.
-class SteppedField final : public DistanceField {
+class SteppedField final : public sdf::DistanceField {
  public:
   SteppedField() {
     for (int step = 0; step < kNumStates; ++step) {
-      grids_.push_back(ComputeSignedDistance(WorldAtStep(step), DistanceConvention::kBwdist));
+      grids_.push_back(
+          sdf::ComputeSignedDistance(WorldAtStep(step), sdf::DistanceConvention::kBwdist));
     }
   }
 
-  DistanceSample Sample(const Eigen::Vector3d& p_WQ, EpisodeTime t) const override {
+  sdf::DistanceSample Sample(const Eigen::Vector3d& p_WQ, EpisodeTime t) const override {
     // Support times are sums of steps: rounded, they may stand a little after the step they mean.
     const double step = std::ceil(t.seconds() / kStep_s - 1e-6);
-    const GridSample sample =
+    const sdf::GridSample sample =
         grids_[static_cast<std::size_t>(std::clamp(step, 0.0, kNumStates - 1.0))].Sample(p_WQ);
     if (!sample.in_grid) return {max_distance_m(), Eigen::Vector3d::Zero(), false};
     return {sample.distance_m, sample.gradient, true};
   }
 
   void SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime t,
-                  DistanceSamples& samples) const override {
+                  sdf::DistanceSamples& samples) const override {
     samples.distance_m.resize(p_WQ.cols());
     samples.gradient_W.resize(3, p_WQ.cols());
     samples.num_outside = 0;
     for (Eigen::Index s = 0; s < p_WQ.cols(); ++s) {
-      const DistanceSample sample = Sample(p_WQ.col(s), t);
+      const sdf::DistanceSample sample = Sample(p_WQ.col(s), t);
       samples.distance_m(s) = sample.distance_m;
       samples.gradient_W.col(s) = sample.gradient_W;
       samples.num_outside += !sample.in_grid;
@@ -82,7 +83,7 @@ class SteppedField final : public DistanceField {
   double max_distance_m() const override { return 10; }  // more than any reach: no clamp
 
  private:
-  std::vector<SdfGrid> grids_;
+  std::vector<sdf::SdfGrid> grids_;
 };
 
 }  // namespace sidestep::gpmp2_reference

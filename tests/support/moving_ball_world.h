@@ -3,13 +3,13 @@
 #include <memory>
 #include <vector>
 
-#include "sdf/world_model.h"
+#include "sidestep/sdf/world_model.h"
 #include "tests/support/ball_field.h"
 
 namespace sidestep {
 
 /// A world model that knows one moving ball exactly and needs no scans.
-class MovingBallWorld final : public WorldModel {
+class MovingBallWorld final : public sdf::WorldModel {
  public:
   MovingBallWorld(const Eigen::Vector3d& p_WO_start, const Eigen::Vector3d& v_WO, double radius_m)
       : field_(std::make_shared<BallField>(p_WO_start, v_WO, radius_m)), radius_m_(radius_m) {}
@@ -23,7 +23,7 @@ class MovingBallWorld final : public WorldModel {
 
   void Observe(const Scan&) override {}
   const OccupancyGrid& Occupancy() const override { return nothing_; }
-  std::shared_ptr<const DistanceField> MakeField() override { return field_; }
+  std::shared_ptr<const sdf::DistanceField> MakeField() override { return field_; }
   std::vector<PredictedObject> DescribeObjects(
       const std::vector<EpisodeTime>& times) const override {
     PredictedObject ball;
@@ -32,7 +32,7 @@ class MovingBallWorld final : public WorldModel {
     for (const EpisodeTime t : times) ball.X_WO.push_back(Pose::Translation(field_->CenterAt(t)));
     return {ball};
   }
-  WorldModelTimes TakeTimes() override { return {}; }
+  sdf::WorldModelTimes TakeTimes() override { return {}; }
 
  private:
   std::shared_ptr<const BallField> field_;

@@ -1,13 +1,13 @@
-#include "core/hdf5_image.h"
+#include "sidestep/record/hdf5_image.h"
 
 #include <algorithm>
 #include <functional>
 #include <numeric>
 #include <stdexcept>
 
-#include "core/input_error.h"
+#include "sidestep/core/input_error.h"
 
-namespace sidestep {
+namespace sidestep::record {
 namespace {
 
 std::mutex& LibraryMutex() {
@@ -284,4 +284,4 @@ Hdf5Array<std::string> Hdf5ImageReader::ReadStrings(const std::string& path,
   return array;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::record

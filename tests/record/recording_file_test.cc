@@ -1,3 +1,5 @@
+#include "sidestep/record/recording_file.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
@@ -12,14 +14,13 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/hdf5_image.h"
-#include "core/input_error.h"
-#include "core/recording.h"
-#include "core/sealed_file.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/record/hdf5_image.h"
+#include "sidestep/record/sealed_file.h"
 #include "tests/support/full_recording.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::record {
 namespace {
 
 using ::testing::AllOf;
@@ -419,4 +420,4 @@ TEST_F(RecordingFile, IsRefusedWithoutReadableHdf5Inside) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::record

@@ -1,3 +1,5 @@
+#include "sidestep/record/recording_file.h"
+
 #include <hdf5.h>
 
 #include <algorithm>
@@ -5,11 +7,10 @@
 #include <functional>
 #include <stdexcept>
 
-#include "core/hdf5_image.h"
-#include "core/recording.h"
-#include "core/sealed_file.h"
+#include "sidestep/record/hdf5_image.h"
+#include "sidestep/record/sealed_file.h"
 
-namespace sidestep {
+namespace sidestep::record {
 namespace {
 
 const SealedFormat kFormat = {"sidestep trace", 1};
@@ -598,4 +599,4 @@ std::string Hdf5Version() {
   return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(release);
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::record

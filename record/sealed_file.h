@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace sidestep {
+namespace sidestep::record {
 
 /// A file that can tell whether it is whole: 512 bytes of text that name the format, its version,
 /// and the length and checksum of what follows, then the payload. A cut, a flipped bit or a file of
@@ -27,4 +27,4 @@ void WriteSealedFile(const std::string& path, const SealedFormat& format,
 /// another format or version, cut off or damaged.
 std::vector<unsigned char> ReadSealedFile(const std::string& path, const SealedFormat& format);
 
-}  // namespace sidestep
+}  // namespace sidestep::record

@@ -1,4 +1,4 @@
-#include "core/sealed_file.h"
+#include "sidestep/record/sealed_file.h"
 
 #include <unistd.h>
 
@@ -11,9 +11,9 @@
 #include <fstream>
 #include <string_view>
 
-#include "core/input_error.h"
+#include "sidestep/core/input_error.h"
 
-namespace sidestep {
+namespace sidestep::record {
 namespace {
 
 constexpr std::size_t kHeadBytes = 512;  // the smallest user block of HDF5
@@ -135,4 +135,4 @@ std::vector<unsigned char> ReadSealedFile(const std::string& path, const SealedF
   return payload;
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::record

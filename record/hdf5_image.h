@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace sidestep {
+namespace sidestep::record {
 
 /// While one lives, its thread alone uses the HDF5 library (which is not thread-safe as Debian
 /// builds it), and the library does not print its error stack.
@@ -110,4 +110,4 @@ class Hdf5ImageReader {
   Hdf5Id file_;
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::record

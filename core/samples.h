@@ -1,16 +1,15 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <limits>
-#include <map>
 #include <string>
 #include <vector>
 
-#include "core/pose.h"
-#include "core/time.h"
-#include "core/trajectory.h"
+#include "sidestep/core/pose.h"
+#include "sidestep/core/time.h"
+#include "sidestep/core/trajectory.h"
 
+// What the parts of a closed loop tell of themselves, sample by sample.
 namespace sidestep {
 
 /// One control tick of a robot: what it was told and what it did. All vectors have shape n.
@@ -70,54 +69,5 @@ struct TrackEvent {
   int other_id = 0;  ///< of the other one in a merge or a split; 0: none
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< [m] where it is thought to be
 };
-
-/// A named object as a sensor reported it.
-struct SeenObject {
-  std::string id;
-  Pose X_WO;
-  /// Of position (x, y, z in W) and rotation vector, m and rad.
-  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-};
-
-/// One scan as it was told to the planner's model of the world.
-struct ObservationRecord {
-  EpisodeTime t;          ///< of its capture
-  EpisodeTime t_arrival;  ///< when the loop had it
-  /// The cells of the workspace (GridSpec::Index, ascending) that it says are filled when the scan
-  /// before said free, or the other way round; before the first, everything is free.
-  std::vector<std::int64_t> changed_cells;
-  std::vector<SeenObject> objects;
-};
-
-/// Everything of one episode: enough to draw it and to judge it again without running it. Holds no
-/// wall-clock figure, so that equal runs give equal bytes.
-struct Recording {
-  /// Facts of the run: scenario, robot, planner, knowledge, seed, versions, ... ; all text.
-  std::map<std::string, std::string> header;
-  std::string scenario_yaml;           ///< the scenario as run, overrides applied
-  std::string model_xml;               ///< MJCF of the whole world
-  std::vector<std::string> joints;     ///< n names, as in the MJCF
-  std::vector<std::string> obstacles;  ///< mocap bodies, as in the MJCF
-  Eigen::VectorXd q_start;
-  Eigen::VectorXd q_goal;
-  Eigen::VectorXd v_max;               ///< the robot's velocity limits, rad/s
-  std::vector<ControlSample> control;  ///< at the control rate
-  std::vector<TruthSample> truth;      ///< at 100 Hz
-  std::vector<ObservationRecord> observations;
-  std::vector<CycleRecord> cycles;
-  std::vector<TrackEvent> events;         ///< of prediction only, in order
-  std::map<std::string, double> metrics;  ///< of this episode; NaN where one does not apply
-};
-
-/// Version of the HDF5 library, e.g. "1.10.8".
-std::string Hdf5Version();
-
-/// Writes `recording` as HDF5 (layout: docs/trace.md). Equal recordings give equal bytes.
-/// @throws InputError if the file cannot be written.
-void WriteRecording(const Recording& recording, const std::string& path);
-
-/// Reads it back. @throws InputError, naming the file and what is wrong, if the file is missing,
-/// not HDF5, cut off, or not a recording of this version.
-Recording ReadRecording(const std::string& path);
 
 }  // namespace sidestep
