@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "sidestep/record/questions.h"
 #include "sidestep/render/timeline.h"
 
 namespace sidestep::render {
@@ -59,13 +60,13 @@ Color ColorOf(Mood mood) {
 }
 
 Status StatusAt(const record::Recording& recording, EpisodeTime t) {
-  const std::optional<Touch> touch = FirstTouch(recording);
-  if (touch && touch->t <= t) {
+  const std::optional<record::Touch> touch = record::FirstTouch(recording, t);
+  if (touch) {
     return {"CONTACT at " + Seconds(touch->t.seconds()) +
                 (touch->object.empty() ? "" : " with " + touch->object),
             Mood::kBad};
   }
-  const std::optional<Clearance> least = LeastClearance(recording, t);
+  const std::optional<record::Clearance> least = record::LeastClearance(recording, t);
   const std::string least_text = least ? "least clearance " + Millimetres(least->clearance_m) : "";
   const auto goal = recording.metrics.find("time_to_goal_s");
   const bool knows_goal = goal != recording.metrics.end();
@@ -73,10 +74,10 @@ Status StatusAt(const record::Recording& recording, EpisodeTime t) {
     return {"goal reached at " + Seconds(goal->second) + (least ? ", " + least_text : ""),
             Mood::kGood};
   }
-  if (knows_goal && t >= EndOf(recording)) {
+  if (knows_goal && t >= record::EndOf(recording)) {
     return {"goal not reached" + (least ? ", " + least_text : ""), Mood::kNear};
   }
-  const std::optional<Clearance> now = ClearanceAt(recording, t);
+  const std::optional<record::Clearance> now = record::ClearanceAt(recording, t);
   if (!now) return {"", Mood::kNeutral};
   return {"clearance " + Millimetres(now->clearance_m) +
               (least ? ", least so far " + Millimetres(least->clearance_m) : ""),

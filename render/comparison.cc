@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/record/questions.h"
 #include "sidestep/render/timeline.h"
 #include "sidestep/render/view_choice.h"
 
@@ -116,18 +117,18 @@ void Comparison::ChooseViews(const PictureOptions& options) {
 
 EpisodeTime Comparison::end() const {
   EpisodeTime end;
-  for (const Panel& panel : panels_) end = std::max(end, EndOf(panel.model.recording()));
+  for (const Panel& panel : panels_) end = std::max(end, record::EndOf(panel.model.recording()));
   return end;
 }
 
 EpisodeTime Comparison::telling_moment() const {
   std::optional<EpisodeTime> first_touch;
-  std::optional<Clearance> least;
+  std::optional<record::Clearance> least;
   for (const Panel& panel : panels_) {
     const record::Recording& recording = panel.model.recording();
-    const std::optional<Touch> touch = FirstTouch(recording);
+    const std::optional<record::Touch> touch = record::FirstTouch(recording);
     if (touch && (!first_touch || touch->t < *first_touch)) first_touch = touch->t;
-    const std::optional<Clearance> clearance = LeastClearance(recording, end());
+    const std::optional<record::Clearance> clearance = record::LeastClearance(recording, end());
     if (clearance && (!least || clearance->clearance_m < least->clearance_m)) least = clearance;
   }
   if (first_touch) return *first_touch;
@@ -168,7 +169,7 @@ void Comparison::DrawLegend(Image& image) const {
 
 void Comparison::DrawPanel(Image& image, Panel& panel, EpisodeTime t) const {
   const record::Recording& recording = panel.model.recording();
-  const EpisodeTime own_end = EndOf(recording);
+  const EpisodeTime own_end = record::EndOf(recording);
   const bool finished = t > own_end;
   const EpisodeTime own_t = std::min(t, own_end);
   if (finished && !panel.last_picture) panel.last_picture = panel.painter.Draw(own_t);

@@ -167,7 +167,7 @@ void ScenePainter::AimShadows() {
   }
 }
 
-void ScenePainter::TintTouched(const Touch& touch) {
+void ScenePainter::TintTouched(const record::Touch& touch) {
   constexpr float kShare = 0.6F;
   const float tint[] = {static_cast<float>(kContactColor.r) / 255,
                         static_cast<float>(kContactColor.g) / 255,
@@ -184,7 +184,8 @@ Image ScenePainter::Draw(EpisodeTime t) {
   const CycleRecord* const cycle = CycleInForce(trace_.recording(), t);
   const Eigen::Matrix3Xd plan =
       cycle == nullptr ? Eigen::Matrix3Xd(3, 0) : trace_.TipPlan(*cycle, t);
-  const std::optional<Touch> touch = TouchWithin(trace_.recording(), t, kTouchShown);
+  const std::optional<record::Touch> touch =
+      record::TouchWithin(trace_.recording(), t, kTouchShown);
   trace_.MoveTo(t);
   mjvOption option;
   mjv_defaultOption(&option);

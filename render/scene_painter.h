@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "sidestep/record/questions.h"
 #include "sidestep/render/camera.h"
 #include "sidestep/render/gl_context.h"
 #include "sidestep/render/image.h"
@@ -38,7 +39,7 @@ class ScenePainter {
  private:
   void DropUnseen();
   void AimShadows();
-  void TintTouched(const Touch& touch);
+  void TintTouched(const record::Touch& touch);
   void DrawContactBoxes(Overlay& overlay) const;
   static void DrawPredictions(Overlay& overlay, const CycleRecord& cycle, EpisodeTime t);
 

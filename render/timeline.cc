@@ -1,7 +1,8 @@
 #include "sidestep/render/timeline.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "sidestep/record/questions.h"
 
 namespace sidestep::render {
 namespace {
@@ -34,20 +35,7 @@ EpisodeTime TimeOfSample(const Sample& sample) {
   return sample.t;
 }
 
-Touch TouchOf(const TruthSample& sample) {
-  const bool timed = std::isfinite(sample.contact_s);
-  return {timed ? EpisodeTime(sample.contact_s) : sample.t, sample.contact_object,
-          sample.p_WContact};
-}
-
 }  // namespace
-
-EpisodeTime EndOf(const record::Recording& recording) {
-  EpisodeTime end;
-  if (!recording.control.empty()) end = std::max(end, recording.control.back().t);
-  if (!recording.truth.empty()) end = std::max(end, recording.truth.back().t);
-  return end;
-}
 
 Eigen::VectorXd JointsAt(const record::Recording& recording, EpisodeTime t) {
   const Position at = Locate(recording.control, t, TimeOfSample<ControlSample>);
@@ -75,7 +63,7 @@ std::vector<Pose> ObstaclesAt(const record::Recording& recording, EpisodeTime t)
 double ObstacleSpeedAt(const record::Recording& recording, EpisodeTime t) {
   constexpr HorizonOffset kHalfWindow(0.025);
   const EpisodeTime begin = std::max(EpisodeTime(0), t - kHalfWindow);
-  const EpisodeTime end = std::min(EndOf(recording), t + kHalfWindow);
+  const EpisodeTime end = std::min(record::EndOf(recording), t + kHalfWindow);
   if (end <= begin) return 0;
   const std::vector<Pose> first = ObstaclesAt(recording, begin);
   const std::vector<Pose> last = ObstaclesAt(recording, end);
@@ -92,40 +80,6 @@ const CycleRecord* CycleInForce(const record::Recording& recording, EpisodeTime 
     if (cycle.accepted && cycle.plan.num_states() > 0 && cycle.t_effect <= t) in_force = &cycle;
   }
   return in_force;
-}
-
-std::optional<Clearance> ClearanceAt(const record::Recording& recording, EpisodeTime t) {
-  if (recording.truth.empty()) return std::nullopt;
-  const TruthSample& sample =
-      recording.truth[Locate(recording.truth, t, TimeOfSample<TruthSample>).before];
-  return Clearance{sample.t, sample.clearance_m};
-}
-
-std::optional<Clearance> LeastClearance(const record::Recording& recording, EpisodeTime t) {
-  std::optional<Clearance> least;
-  for (const TruthSample& sample : recording.truth) {
-    if (sample.t > t) break;
-    if (!least || sample.clearance_m < least->clearance_m) least = {sample.t, sample.clearance_m};
-  }
-  return least;
-}
-
-std::optional<Touch> FirstTouch(const record::Recording& recording) {
-  for (const TruthSample& sample : recording.truth) {
-    if (sample.in_contact) return TouchOf(sample);
-  }
-  return std::nullopt;
-}
-
-std::optional<Touch> TouchWithin(const record::Recording& recording, EpisodeTime t,
-                                 HorizonOffset window) {
-  std::optional<Touch> latest;
-  for (const TruthSample& sample : recording.truth) {
-    if (!sample.in_contact) continue;
-    const Touch touch = TouchOf(sample);
-    if (touch.t <= t && sample.t >= t - window) latest = touch;
-  }
-  return latest;
 }
 
 }  // namespace sidestep::render

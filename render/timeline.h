@@ -1,8 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "sidestep/core/pose.h"
@@ -13,9 +11,6 @@ namespace sidestep::render {
 
 // What a recording says about one moment. Before its first sample the first one counts, after its
 // last one the last.
-
-/// When the last sample was taken; zero if there is none.
-EpisodeTime EndOf(const record::Recording& recording);
 
 /// The measured joint positions, linear between samples; shape n. Needs at least one control
 /// sample.
@@ -33,24 +28,5 @@ double ObstacleSpeedAt(const record::Recording& recording, EpisodeTime t);
 
 /// The cycle whose plan the robot follows, or null before the first plan takes effect.
 const CycleRecord* CycleInForce(const record::Recording& recording, EpisodeTime t);
-
-/// The robot's clearance from all it may not touch, as last judged.
-struct Clearance {
-  EpisodeTime t;
-  double clearance_m = 0;
-};
-std::optional<Clearance> ClearanceAt(const record::Recording& recording, EpisodeTime t);
-/// The least one up to `t`; of equal ones the first.
-std::optional<Clearance> LeastClearance(const record::Recording& recording, EpisodeTime t);
-
-struct Touch {
-  EpisodeTime t;
-  std::string object;
-  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< [m] where
-};
-std::optional<Touch> FirstTouch(const record::Recording& recording);
-/// The latest touch of the last `window` before `t`, if there was one.
-std::optional<Touch> TouchWithin(const record::Recording& recording, EpisodeTime t,
-                                 HorizonOffset window);
 
 }  // namespace sidestep::render

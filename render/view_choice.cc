@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "sidestep/record/questions.h"
 #include "sidestep/render/timeline.h"
 #include "sidestep/sim/mujoco_pose.h"
 
@@ -62,7 +63,7 @@ struct Interval {
 std::vector<Interval> TimesOfPassing(const TraceModel& trace, const Eigen::Vector3d& p_WRobot) {
   std::vector<Interval> passing(trace.recording().obstacles.size());
   std::vector<double> nearest_m(passing.size(), std::numeric_limits<double>::infinity());
-  const double end_s = std::min(kWatched_s, EndOf(trace.recording()).seconds());
+  const double end_s = std::min(kWatched_s, record::EndOf(trace.recording()).seconds());
   for (double t_s = 0; t_s <= end_s; t_s += kStep_s / 5) {
     const std::vector<Pose> poses = ObstaclesAt(trace.recording(), EpisodeTime(t_s));
     for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -84,7 +85,7 @@ struct Moment {
 std::vector<Moment> Moments(const std::vector<TraceModel*>& traces) {
   std::vector<Moment> moments;
   for (TraceModel* const trace : traces) {
-    const double end_s = std::min(kWatched_s, EndOf(trace->recording()).seconds());
+    const double end_s = std::min(kWatched_s, record::EndOf(trace->recording()).seconds());
     for (double t_s = 0; t_s <= end_s; t_s += kStep_s) {
       moments.push_back({trace, EpisodeTime(t_s)});
     }

@@ -2,21 +2,20 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
+
+#include "sidestep/record/questions.h"
 
 namespace sidestep::bench {
 
 double FirstContact(const record::Recording& recording) {
-  for (const TruthSample& sample : recording.truth) {
-    if (sample.in_contact) return sample.contact_s;
-  }
-  return kNoContact;
+  const std::optional<record::Touch> touch = record::FirstTouch(recording);
+  return touch ? touch->t.seconds() : kNoContact;
 }
 
 double MinClearance(const record::Recording& recording) {
-  if (recording.truth.empty()) return std::numeric_limits<double>::quiet_NaN();
-  double least = std::numeric_limits<double>::infinity();
-  for (const TruthSample& sample : recording.truth) least = std::min(least, sample.clearance_m);
-  return least;
+  const std::optional<record::Clearance> least = record::LeastClearance(recording);
+  return least ? least->clearance_m : std::numeric_limits<double>::quiet_NaN();
 }
 
 double Replans(const record::Recording& recording) {

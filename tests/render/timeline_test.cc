@@ -28,7 +28,6 @@ TEST(Timeline, GivesTheJointsBetweenSamplesOnAStraightLine) {
     EXPECT_NEAR(JointsAt(recording, EpisodeTime(c.t_s))(0), c.q, 1e-12) << c.t_s;
     EXPECT_NEAR(JointsAt(recording, EpisodeTime(c.t_s))(1), -c.q / 10, 1e-12) << c.t_s;
   }
-  EXPECT_EQ(EndOf(recording), EpisodeTime(4));
 }
 
 TEST(Timeline, TurnsPosesEvenlyAndClampsThemOutside) {
@@ -67,40 +66,6 @@ TEST(Timeline, KnowsWhichPlanIsInForce) {
     const CycleRecord* const cycle = CycleInForce(recording, EpisodeTime(c.t_s + 1e-9));
     EXPECT_EQ(cycle == nullptr ? -1 : cycle - recording.cycles.data(), c.cycle) << c.t_s;
   }
-}
-
-TEST(Timeline, FindsTheLeastClearanceUpToAMoment) {
-  const record::Recording recording = MakeSampleRecording({});  // 31 mm + 0.2 m/s |t - 1.25 s|
-  EXPECT_NEAR(LeastClearance(recording, EpisodeTime(0.5))->clearance_m, 0.031 + 0.15, 1e-12);
-  EXPECT_NEAR(LeastClearance(recording, EpisodeTime(2))->clearance_m, 0.031, 1e-12);
-  EXPECT_NEAR(LeastClearance(recording, EpisodeTime(2))->t.seconds(), 1.25, 1e-12);
-  EXPECT_NEAR(ClearanceAt(recording, EpisodeTime(2))->clearance_m, 0.031 + 0.15, 1e-12);
-  EXPECT_FALSE(LeastClearance(record::Recording(), EpisodeTime(2)));
-  EXPECT_FALSE(ClearanceAt(record::Recording(), EpisodeTime(2)));
-}
-
-TEST(Timeline, FindsTheFirstTouchAndTheRecentOnes) {
-  EXPECT_FALSE(FirstTouch(MakeSampleRecording({})));
-  SampleEpisode episode;
-  episode.contact = true;  // from 1.00 s to 1.09 s
-  const record::Recording recording = MakeSampleRecording(episode);
-  ASSERT_TRUE(FirstTouch(recording));
-  EXPECT_NEAR(FirstTouch(recording)->t.seconds(), 1.0, 1e-12);
-  EXPECT_EQ(FirstTouch(recording)->object, "trolley");
-  const HorizonOffset window(0.25);
-  EXPECT_FALSE(TouchWithin(recording, EpisodeTime(0.99), window));
-  EXPECT_NEAR(TouchWithin(recording, EpisodeTime(1.052), window)->t.seconds(), 1.05, 1e-12);
-  EXPECT_NEAR(TouchWithin(recording, EpisodeTime(1.30), window)->t.seconds(), 1.09, 1e-12);
-  EXPECT_FALSE(TouchWithin(recording, EpisodeTime(1.36), window));
-}
-
-TEST(Timeline, TimesATouchWithoutATimeByItsSample) {
-  record::Recording recording;
-  TruthSample sample;
-  sample.t = EpisodeTime(0.42);
-  sample.in_contact = true;
-  recording.truth = {sample};
-  EXPECT_EQ(FirstTouch(recording)->t, EpisodeTime(0.42));
 }
 
 }  // namespace

@@ -1,0 +1,82 @@
+#include "sidestep/record/questions.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace sidestep::record {
+namespace {
+
+// Two seconds of truth, 100 Hz: 31 mm + 0.2 m/s |t - 1.25 s|.
+Recording Passing() {
+  Recording recording;
+  for (int i = 0; i <= 200; ++i) {
+    TruthSample sample;
+    sample.t = EpisodeTime(0.01 * i);
+    sample.clearance_m = 0.031 + 0.2 * std::abs(0.01 * i - 1.25);
+    recording.truth.push_back(sample);
+  }
+  return recording;
+}
+
+// The same, with something touched from 1.00 s to 1.09 s.
+Recording Touching() {
+  Recording recording = Passing();
+  for (TruthSample& sample : recording.truth) {
+    if (sample.t < EpisodeTime(0.995) || sample.t > EpisodeTime(1.095)) continue;
+    sample.in_contact = true;
+    sample.contact_s = sample.t.seconds();
+    sample.contact_object = "trolley";
+  }
+  return recording;
+}
+
+TEST(Questions, TheEndIsWhereTheLastSampleIs) {
+  Recording recording = Passing();
+  EXPECT_EQ(EndOf(recording), EpisodeTime(2));
+  recording.control.emplace_back().t = EpisodeTime(4);
+  EXPECT_EQ(EndOf(recording), EpisodeTime(4));
+  EXPECT_EQ(EndOf(Recording()), EpisodeTime(0));
+}
+
+TEST(Questions, TheLeastClearanceIsThatUpToAMoment) {
+  const Recording recording = Passing();
+  EXPECT_NEAR(LeastClearance(recording, EpisodeTime(0.5))->clearance_m, 0.031 + 0.15, 1e-12);
+  EXPECT_NEAR(LeastClearance(recording, EpisodeTime(2))->clearance_m, 0.031, 1e-12);
+  EXPECT_NEAR(LeastClearance(recording)->t.seconds(), 1.25, 1e-12);
+  EXPECT_NEAR(ClearanceAt(recording, EpisodeTime(2))->clearance_m, 0.031 + 0.15, 1e-12);
+  EXPECT_NEAR(ClearanceAt(recording, EpisodeTime(1.259))->clearance_m, 0.031, 1e-12);
+  EXPECT_FALSE(LeastClearance(Recording()));
+  EXPECT_FALSE(ClearanceAt(Recording(), EpisodeTime(2)));
+}
+
+TEST(Questions, ATouchIsKnownFromWhenItHappenedOn) {
+  EXPECT_FALSE(FirstTouch(Passing()));
+  const Recording recording = Touching();
+  ASSERT_TRUE(FirstTouch(recording));
+  EXPECT_NEAR(FirstTouch(recording)->t.seconds(), 1.0, 1e-12);
+  EXPECT_EQ(FirstTouch(recording)->object, "trolley");
+  EXPECT_FALSE(FirstTouch(recording, EpisodeTime(0.999)));
+  EXPECT_NEAR(FirstTouch(recording, EpisodeTime(1.5))->t.seconds(), 1.0, 1e-12);
+}
+
+TEST(Questions, ATouchIsRecentForAsLongAsTheWindowIs) {
+  const Recording recording = Touching();
+  const HorizonOffset window(0.25);
+  EXPECT_FALSE(TouchWithin(recording, EpisodeTime(0.99), window));
+  EXPECT_NEAR(TouchWithin(recording, EpisodeTime(1.052), window)->t.seconds(), 1.05, 1e-12);
+  EXPECT_NEAR(TouchWithin(recording, EpisodeTime(1.30), window)->t.seconds(), 1.09, 1e-12);
+  EXPECT_FALSE(TouchWithin(recording, EpisodeTime(1.36), window));
+}
+
+TEST(Questions, ATouchWithoutATimeHappenedAtItsSample) {
+  Recording recording;
+  TruthSample sample;
+  sample.t = EpisodeTime(0.42);
+  sample.in_contact = true;
+  recording.truth = {sample};
+  EXPECT_EQ(FirstTouch(recording)->t, EpisodeTime(0.42));
+}
+
+}  // namespace
+}  // namespace sidestep::record
