@@ -40,6 +40,11 @@ Vector3d Support(const ConvexSolid& solid, const Vector3d& n) {
   return Vector3d::Zero();
 }
 
+// A point of a core, its middle where that is the origin.
+Vector3d AnyPoint(const ConvexSolid& solid) {
+  return solid.core == ConvexSolid::Core::kHull ? solid.vertices.front() : Vector3d::Zero();
+}
+
 struct Simplex {
   Eigen::Matrix<double, 3, 4> points = Eigen::Matrix<double, 3, 4>::Zero();
   int size = 0;
@@ -99,7 +104,8 @@ Vector3d NearestToOrigin(Simplex* simplex) {
 
 double ConvexDistance(const ConvexSolid& a, const ConvexSolid& b, const Eigen::Isometry3d& X_AB) {
   // v runs over differences of a point of core a and a point of core b, towards the shortest one.
-  Vector3d v = -X_AB.translation();
+  // It must begin with such a difference, or it may be shorter than all of them.
+  Vector3d v = -(X_AB * AnyPoint(b) - AnyPoint(a));
   Simplex simplex;
   for (int i = 0; i < kMaxIterations; ++i) {
     const double length = v.norm();

@@ -12,7 +12,7 @@ struct ConvexSolid {
   /// Of the core, in its own frame. Segment: half its length, along z, in z. Box: half edges.
   /// Cylinder: radius in x, half the length, along z, in z. Ellipsoid: semi-axes.
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3d> vertices;  ///< of a hull
+  std::vector<Eigen::Vector3d> vertices;  ///< of a hull, at least one; anywhere in the frame
   double radius_m = 0;
 };
 

@@ -69,7 +69,7 @@ double ReachAgainst(const mjModel& model, const mjData& data, int geom,
     default: {  // a mesh
       const int mesh = model.geom_dataid[geom];
       const float* vertices = model.mesh_vert + 3 * model.mesh_vertadr[mesh];
-      double reach = 0;
+      double reach = -std::numeric_limits<double>::infinity();  // its centre may be outside
       for (int i = 0; i < model.mesh_vertnum[mesh]; ++i) {
         const Eigen::Map<const Eigen::Vector3f> vertex(vertices + 3 * i);
         reach = std::max(reach, -n.dot(vertex.cast<double>()));

@@ -287,6 +287,31 @@ TEST(GeomDistance, TakesAMeshForItsConvexHull) {
   }
 }
 
+TEST(GeomDistance, MeasuresToAMeshThatLiesFarFromItsFrame) {
+  // A cube 20 m from the origin of the mesh's own file, and its geom moved once more.
+  std::string mesh = "<mesh name='m' vertex='";
+  for (const char* x : {"19.9 ", "20.1 "}) {
+    for (const char* y : {"-0.1 ", "0.1 "}) {
+      for (const char* z : {"-0.1 ", "0.1 "}) mesh += std::string(x) + y + z;
+    }
+  }
+  mesh += "'/>";
+  for (const char* other : {"type='sphere' size='0.1'", "type='box' size='0.1 0.1 0.1'"}) {
+    SmallModel m = TwoGeoms("type='mesh' mesh='m' pos='0 0 0.3'", other, mesh);
+    const GeomDistance distance(*m.model);
+    for (const double x : {-1.0, 0.0, 19.5, 20.5, 30.0}) {
+      m.Place(1, Pose::Translation({x, 0, 0.3}));
+      EXPECT_NEAR(distance.Distance(*m.data, 0, 1), std::abs(x - 20) - 0.2, 1e-5) << x;
+      EXPECT_LE(distance.LowerBound(*m.data, 0, 1), std::abs(x - 20) - 0.2 + 1e-5) << x;
+    }
+  }
+  SmallModel m = TwoGeoms("type='mesh' mesh='m'", "type='plane' size='0 0 1'", mesh);
+  const GeomDistance distance(*m.model);
+  m.Place(1, Pose(Eigen::Quaterniond(Eigen::AngleAxisd(kEighth * 2, Vector3d::UnitY())),
+                  {5, 0, 0}));  // looks along x
+  EXPECT_NEAR(distance.Distance(*m.data, 0, 1), 14.9, 1e-5);
+}
+
 TEST(GeomDistance, MeasuresToTheTrianglesOfAHeightField) {
   // A ramp of slope 1/2 along x, 2 m long and wide; below it the base.
   SmallModel m = TwoGeoms("type='sphere' size='0.1'", "type='hfield' hfield='h'",
@@ -305,6 +330,9 @@ TEST(GeomDistance, MeasuresToTheTrianglesOfAHeightField) {
   EXPECT_NEAR(distance.Distance(*m.data, 0, 1), 0.1, kTolerance_m);
   m.Place(0, Pose::Translation({1.3, 0.5, 0.4}));  // beside its high end
   EXPECT_NEAR(distance.Distance(*m.data, 0, 1), 0.2, kTolerance_m);
+  // Far beside its corner, on the far side of the frame for most of its prisms.
+  m.Place(0, Pose::Translation({-9, 0.3, -0.05}));
+  EXPECT_NEAR(distance.Distance(*m.data, 0, 1), 7.9, kTolerance_m);
   m.Place(0, Pose::Translation({0, 0, 0.45}));
   EXPECT_NEAR(distance.Distance(*m.data, 0, 1), 0, kTolerance_m);
   EXPECT_TRUE(FindTouch(*m.model, *m.data, 0, 1).has_value());
