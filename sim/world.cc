@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/sim/contact_room.h"
 
 namespace sidestep::sim {
 
@@ -26,8 +27,7 @@ World::World(const scenarios::Scenario& scenario, const std::string& xml,
     data_->qpos[joints_[i].qpos] = q_start(static_cast<Eigen::Index>(i));
   }
   MoveObstacles();
-  mj_step1(model_.get(), data_.get());
-  CheckPhysics();
+  ComputeWhatFollows();
 }
 
 World::Joint World::FindJoint(const std::string& name, const std::string& file) const {
@@ -56,7 +56,14 @@ void World::Step(const Eigen::VectorXd& torque) {
   ++ticks_;
   data_->time = time().seconds();
   MoveObstacles();
+  ComputeWhatFollows();
+}
+
+void World::ComputeWhatFollows() {
   mj_step1(model_.get(), data_.get());
+  while (LacksContactRoom(*data_) && DoubleContactRoom(model_.get(), &data_)) {
+    mj_step1(model_.get(), data_.get());
+  }
   CheckPhysics();
 }
 

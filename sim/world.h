@@ -50,7 +50,7 @@ class World {
 
   const std::vector<scenarios::MovingObstacle>& obstacles() const { return obstacles_; }
   const mjModel& model() const { return *model_; }
-  const mjData& data() const { return *data_; }
+  const mjData& data() const { return *data_; }  ///< as it is now: not to be kept across a Step
 
  private:
   struct Joint {
@@ -60,6 +60,7 @@ class World {
   Joint FindJoint(const std::string& name, const std::string& file) const;
   Eigen::VectorXd Gather(const mjtNum* of_dofs) const;
   void MoveObstacles();
+  void ComputeWhatFollows();
   void CheckPhysics() const;
 
   MujocoModelPtr model_;

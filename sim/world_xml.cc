@@ -157,7 +157,7 @@ void AddSettings(const scenarios::Scenario& scenario, XMLElement* world) {
   XMLElement* option = Append(world, "option");
   Set(option, "timestep", "0.001");
   Set(option, "integrator", "Euler");
-  // Room for a robot that lies deep in an obstacle; running out of it ends the episode.
+  // Room for a robot that lies deep in an obstacle; a simulation makes more where it needs it.
   XMLElement* size = Append(world, "size");
   Set(size, "nconmax", "200");
   Set(size, "njmax", "800");
