@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstring>
 #include <deque>
+#include <exception>
 #include <iterator>
+#include <stdexcept>
 
 #include "sidestep/bench/metrics/motion_metrics.h"
 #include "sidestep/bench/metrics/registry.h"
 #include "sidestep/bench/planner_settings.h"
+#include "sidestep/bench/sensor_watch.h"
 #include "sidestep/core/cpu_time.h"
 #include "sidestep/planner/registry.h"
 #include "sidestep/planner/replanner.h"
@@ -58,6 +60,28 @@ record::Recording BeginRecording(const scenarios::Scenario& scenario,
   return recording;
 }
 
+constexpr const char* kStages[] = {"sense", "map", "segment", "track", "predict", "optimise"};
+
+// Why the robot was never given a plan.
+std::string WhyNoPlan(const record::Recording& recording) {
+  if (recording.observations.empty()) return "no scan has arrived";
+  if (recording.cycles.empty()) return "no planning cycle was due after the first scan";
+  return "none of " + std::to_string(recording.cycles.size()) +
+         " plans was accepted; the last one: " + recording.cycles.back().status;
+}
+
+// Whatever happens, a robot is not left moving.
+class HoldAtTheEnd {
+ public:
+  explicit HoldAtTheEnd(robot::RobotInterface& robot) : robot_(robot) {}
+  ~HoldAtTheEnd() { robot_.Hold(); }
+  HoldAtTheEnd(const HoldAtTheEnd&) = delete;
+  HoldAtTheEnd& operator=(const HoldAtTheEnd&) = delete;
+
+ private:
+  robot::RobotInterface& robot_;
+};
+
 // The loop's state: what has happened so far and what is due.
 class Loop {
  public:
@@ -65,6 +89,7 @@ class Loop {
        const FieldObserver& observe_field)
       : scenario_(scenario),
         world_(world),
+        sensor_(*world.sensor),
         observe_field_(observe_field),
         planner_(planner::MakePlanner(scenario.planner, robot, MakePlannerSettings(scenario))),
         model_(sdf::MakeWorldModel(MakeWorldModelOptions(
@@ -72,12 +97,33 @@ class Loop {
         replanner_(*planner_, *model_, {scenario.horizon_s, scenario.step_s, scenario.q_goal}),
         end_s_(kHorizons * scenario.horizon_s) {
     result_.recording = BeginRecording(scenario, robot, world);
+    for (const char* const stage : kStages) result_.times[stage];
+    result_.times["cycle"];
   }
 
   EpisodeResult Run() {
+    try {
+      Go();
+      KeepLastContact();
+    } catch (const std::exception& error) {
+      Abort(error.what());
+    } catch (...) {
+      Abort("something was thrown that is no std::exception");
+    }
+    return Finish();
+  }
+
+ private:
+  struct Pending {
+    planner::TimedPlan plan;
+    double effect_s;
+  };
+
+  void Go() {
     while (true) {
       // Of things due at the same time, plans take effect first, then scans, then a new cycle.
-      const double next_s = std::min({NextEffect(), NextScan(), next_cycle_s_, end_s_});
+      const double next_s =
+          std::max(now_s_, std::min({NextEffect(), NextScan(), next_cycle_s_, end_s_}));
       Advance(next_s);
       if (next_s >= end_s_) break;
       if (NextEffect() <= next_s) {
@@ -89,21 +135,36 @@ class Loop {
         Replan(next_s);
       }
     }
-    return Finish();
   }
 
- private:
-  struct Pending {
-    planner::TimedPlan plan;
-    double effect_s;
-  };
+  // Stops the robot first of all. What happened before is worth keeping, but whatever failed may
+  // fail again in telling it.
+  void Abort(const std::string& why) {
+    world_.robot->Hold();
+    is_aborted_ = true;
+    result_.reason = why.empty() ? "something failed without saying what" : why;
+    const auto as_far_as_it_goes = [](const auto& keep) {
+      try {
+        keep();
+      } catch (...) {
+      }
+    };
+    as_far_as_it_goes([this] { KeepTicks(); });
+    as_far_as_it_goes([this] { KeepTruth(); });
+    as_far_as_it_goes([this] { KeepLastContact(); });
+  }
 
   double NextEffect() const { return pending_.empty() ? end_s_ + 1 : pending_.front().effect_s; }
-  double NextScan() const { return world_.sensor->NextDue().seconds(); }
+  double NextScan() const { return sensor_.NextDue().seconds(); }
 
   void Advance(double t_s) {
-    now_s_ = std::max(now_s_, t_s);
+    now_s_ = t_s;
     world_.robot->AdvanceTo(EpisodeTime(t_s));
+    KeepTicks();
+    KeepTruth();
+  }
+
+  void KeepTicks() {
     record::Recording& recording = result_.recording;
     for (ControlSample& tick : world_.robot->TakeControlLog()) {
       if (!reached_ && AtGoal(tick.q, tick.v, recording.q_goal)) {
@@ -112,22 +173,33 @@ class Loop {
       }
       if (tick.t.seconds() <= end_s_ + kTimeEpsilon) recording.control.push_back(std::move(tick));
     }
+  }
+
+  void KeepTruth() {
     if (world_.truth == nullptr) return;
-    for (TruthSample& sample : world_.truth->TakeSamples()) {
-      if (sample.t.seconds() <= end_s_ + kTimeEpsilon) recording.truth.push_back(std::move(sample));
-    }
+    for (TruthSample& sample : world_.truth->TakeSamples()) KeepTruth(std::move(sample));
+  }
+
+  void KeepTruth(TruthSample sample) {
+    if (sample.t.seconds() > end_s_ + kTimeEpsilon) return;
+    result_.recording.truth.push_back(std::move(sample));
+  }
+
+  void KeepLastContact() {
+    if (world_.truth == nullptr) return;
+    std::optional<TruthSample> contact = world_.truth->ContactSinceLastSample();
+    if (contact) KeepTruth(std::move(*contact));
   }
 
   void Sense() {
     const double begin = ThreadCpuSeconds();
-    const std::optional<Scan> scan = world_.sensor->Read();
+    const std::optional<Scan> scan = sensor_.Read(EpisodeTime(now_s_));
     sense_s_ += ThreadCpuSeconds() - begin;
     if (scan) {
       model_->Observe(*scan);
       std::vector<TrackEvent>& events = result_.recording.events;
       for (TrackEvent& event : model_->TakeEvents()) events.push_back(std::move(event));
       KeepObservation(*scan);
-      has_scan_ = true;
     }
   }
 
@@ -151,7 +223,7 @@ class Loop {
     while (next_cycle_s_ < t_s + latency_s - kTimeEpsilon) {
       next_cycle_s_ = ++cycle_index_ / scenario_.replan_rate_hz;
     }
-    if (!has_scan_) return;  // nothing is known yet
+    if (!sensor_.has_seen()) return;  // nothing is known yet
     planner::Replanner::Cycle cycle =
         replanner_.Run(EpisodeTime(t_s), world_.robot->Read(), HorizonOffset(latency_s));
     if (cycle.plan) pending_.push_back({*cycle.plan, t_s + latency_s});
@@ -163,14 +235,13 @@ class Loop {
 
   void KeepTimes(const planner::Replanner::Cycle& cycle) {
     const sdf::WorldModelTimes map = model_->TakeTimes();
-    const std::pair<const char*, double> stages[] = {
-        {"sense", sense_s_},    {"map", map.map_s},         {"segment", map.segment_s},
-        {"track", map.track_s}, {"predict", map.predict_s}, {"optimise", cycle.optimise_s},
-    };
+    const double seconds[] = {sense_s_,    map.map_s,     map.segment_s,
+                              map.track_s, map.predict_s, cycle.optimise_s};
+    static_assert(std::size(seconds) == std::size(kStages));
     double sum = 0;
-    for (const auto& [name, seconds] : stages) {
-      result_.times[name].push_back(seconds);
-      sum += seconds;
+    for (std::size_t i = 0; i < std::size(kStages); ++i) {
+      result_.times[kStages[i]].push_back(seconds[i]);
+      sum += seconds[i];
     }
     result_.times["cycle"].push_back(sum);
     sense_s_ = 0;
@@ -181,18 +252,18 @@ class Loop {
     for (const Metric& metric : Metrics()) {
       recording.metrics[metric.name] = metric.compute(recording);
     }
-    const bool touched = !std::isnan(recording.metrics.at("first_contact_s"));
-    const bool planned = recording.metrics.at("plans_accepted") > 0;
-    result_.outcome = touched    ? Outcome::kCollision
-                      : reached_ ? Outcome::kGoal
-                      : planned  ? Outcome::kTimeout
-                                 : Outcome::kPlannerFailed;
+    result_.outcome = is_aborted_ ? Outcome::kAborted : Judge(recording, reached_);
     recording.header["outcome"] = ToString(result_.outcome);
+    if (!is_aborted_ && recording.metrics.at("plans_accepted") == 0) {
+      result_.reason = WhyNoPlan(recording);
+    }
+    if (!result_.reason.empty()) recording.header["reason"] = result_.reason;
     return std::move(result_);
   }
 
   const scenarios::Scenario& scenario_;
   EpisodeWorld& world_;
+  SensorWatch sensor_;
   const FieldObserver& observe_field_;
   std::unique_ptr<planner::Planner> planner_;
   std::unique_ptr<sdf::WorldModel> model_;
@@ -205,8 +276,8 @@ class Loop {
   double next_cycle_s_ = 0;
   double end_s_;
   double sense_s_ = 0;
-  bool has_scan_ = false;
   bool reached_ = false;
+  bool is_aborted_ = false;
   EpisodeResult result_;
 };
 
@@ -230,27 +301,19 @@ sdf::WorldModelOptions MakeWorldModelOptions(const scenarios::Scenario& scenario
   return options;
 }
 
-std::string ToString(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::kGoal:
-      return "goal";
-    case Outcome::kCollision:
-      return "collision";
-    case Outcome::kTimeout:
-      return "timeout";
-    case Outcome::kPlannerFailed:
-      return "planner_failed";
-  }
-  return "";
-}
-
 EpisodeResult RunEpisode(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
                          const WorldFactory& make_world, const FieldObserver& observe_field) {
   const auto begin = std::chrono::steady_clock::now();
   EpisodeWorld world = make_world(scenario, robot);
+  const HoldAtTheEnd hold(*world.robot);
   EpisodeResult result = Loop(scenario, robot, world, observe_field).Run();
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;
+}
+
+void RequireWhole(const EpisodeResult& result) {
+  if (result.outcome != Outcome::kAborted) return;
+  throw std::runtime_error("the episode was aborted: " + result.reason);
 }
 
 }  // namespace sidestep::bench

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "sidestep/bench/outcome.h"
 #include "sidestep/record/recording.h"
 #include "sidestep/robot/robot_interface.h"
 #include "sidestep/robot/robot_model.h"
@@ -58,32 +59,36 @@ using FieldObserver =
     std::function<void(EpisodeTime t, std::shared_ptr<const sdf::DistanceField> field,
                        const robot::WorldTruth* truth)>;
 
-enum class Outcome {
-  kGoal,          ///< reached the goal and touched nothing
-  kCollision,     ///< touched something, whatever came after
-  kTimeout,       ///< neither, within twice the horizon
-  kPlannerFailed  ///< neither, and the robot was never given a plan
-};
-std::string ToString(Outcome outcome);
-
 /// CPU seconds by stage ("sense", "map", "segment", "track", "predict", "optimise", "cycle"), one
 /// entry a planning cycle. What sensing and mapping cost since the cycle before is counted in.
 using StageTimes = std::map<std::string, std::vector<double>>;
 
 struct EpisodeResult {
   Outcome outcome = Outcome::kTimeout;
+  /// Why it was aborted, or why the robot was never given a plan; else empty. In the recording's
+  /// header as "reason", beside "outcome".
+  std::string reason;
   record::Recording recording;  ///< its metrics are filled
-  StageTimes times;
-  double wall_s = 0;  ///< of the whole episode
+  StageTimes times;             ///< has every stage, even where there was no planning cycle
+  double wall_s = 0;            ///< of the whole episode
 };
 
 /// Runs one closed loop: sense, predict, re-plan, splice, move, until 0.5 s after the goal is
 /// reached or twice the horizon. Everything but `times` and `wall_s` is a function of the scenario
 /// and the build. A planning cycle begins at multiples of 1 / replan_rate and takes
 /// scenario.latency_s of episode time; the next one begins at the first multiple after that.
+///
+/// What is thrown on the way (by the robot, the sensor, the planner, the observer ...) ends the
+/// episode as aborted: what was recorded until then is the result. However it ends, the robot is
+/// told to hold.
 /// @param scenario with its task resolved (bench/resolve.h).
-/// @throws std::invalid_argument for words of the scenario that no module knows.
+/// @throws std::invalid_argument for words of the scenario that no module knows, and whatever
+/// `make_world` throws: then there was no episode.
 EpisodeResult RunEpisode(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
                          const WorldFactory& make_world, const FieldObserver& observe_field = {});
+
+/// For whom a part of an episode is of no use. @throws std::runtime_error, with the reason, if it
+/// was aborted.
+void RequireWhole(const EpisodeResult& result);
 
 }  // namespace sidestep::bench

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "sidestep/bench/metrics/registry.h"
@@ -57,6 +58,7 @@ std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& s
   }
   json["obstacle_speeds_m_s"] = speeds;
   json["outcome"] = ToString(result.outcome);
+  json["reason"] = result.reason.empty() ? Json(nullptr) : Json(result.reason);
   for (const Metric& metric : Metrics()) {
     json[metric.name] = ValueOf(metric, result.recording.metrics.at(metric.name));
   }
@@ -76,7 +78,10 @@ ResultSummary ReadResult(const std::string& path) {
   try {
     summary.scenario = json.at("scenario").get<std::string>();
     summary.knowledge = json.at("knowledge").get<std::string>();
-    summary.outcome = json.at("outcome").get<std::string>();
+    const auto word = json.at("outcome").get<std::string>();
+    const std::optional<Outcome> outcome = OutcomeFromString(word);
+    if (!outcome) throw InputError(path, "is not a whole result: no outcome is '" + word + "'");
+    summary.outcome = *outcome;
     for (const Metric& metric : Metrics()) {
       const Json& value = json.at(metric.name);
       summary.metrics[metric.name] =

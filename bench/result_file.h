@@ -15,7 +15,8 @@ std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& s
 
 /// What a comparison table needs of a result.json.
 struct ResultSummary {
-  std::string scenario, knowledge, outcome;
+  std::string scenario, knowledge;
+  Outcome outcome = Outcome::kAborted;
   std::map<std::string, double> metrics;  ///< NaN where null
   double cycle_p50_ms = 0;
 };

@@ -72,8 +72,9 @@ StudyRow RunStudyEpisode(const scenarios::Scenario& scenario, const robot::Robot
                          const std::map<std::string, std::string>& factors) {
   return MakeRow(factors, [&](StudyRow& row) {
     const EpisodeResult result = RunEpisode(scenario, robot, make_world);
-    CheckFinite(result.recording);
+    if (result.outcome != Outcome::kAborted) CheckFinite(result.recording);
     row.outcome = ToString(result.outcome);
+    row.error = result.reason;
     row.metrics = result.recording.metrics;
   });
 }

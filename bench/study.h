@@ -15,11 +15,12 @@ namespace sidestep::bench {
 struct StudyRow {
   std::map<std::string, std::string> factors;  ///< e.g. behaviour: stop; the same names in all rows
   std::string outcome;                         ///< a word of Outcome, or "failed"
-  std::string error;                           ///< why, if it failed
+  std::string error;                           ///< why, if it failed; EpisodeResult::reason
   std::map<std::string, double> metrics;       ///< empty if it failed
 };
 
-/// Runs an episode. One that throws, or in which a number is not finite, is a row too: it failed.
+/// Runs an episode. One that cannot begin, or in which a number is not finite, is a row too: it
+/// failed. One that was aborted has the metrics of what there is.
 StudyRow RunStudyEpisode(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
                          const WorldFactory& make_world,
                          const std::map<std::string, std::string>& factors);

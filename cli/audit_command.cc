@@ -106,14 +106,16 @@ int Audit(const AuditOptions& options) {
 
   bench::FieldAudit audit(problem.scenario, options.ahead_s, options.num_points);
   int num_cycles = 0;
-  bench::RunEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths),
-                    [&](EpisodeTime t, const std::shared_ptr<const sdf::DistanceField>& field,
-                        const robot::WorldTruth* truth) {
-                      audit.Look(t, *field, *truth);
-                      ++num_cycles;
-                    });
+  const bench::EpisodeResult result =
+      bench::RunEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths),
+                        [&](EpisodeTime t, const std::shared_ptr<const sdf::DistanceField>& field,
+                            const robot::WorldTruth* truth) {
+                          audit.Look(t, *field, *truth);
+                          ++num_cycles;
+                        });
+  bench::RequireWhole(result);
   if (num_cycles == 0) {
-    std::fprintf(stderr, "audit: the episode had no planning cycle\n");
+    std::fprintf(stderr, "audit: the episode had no planning cycle: %s\n", result.reason.c_str());
     return 1;
   }
 

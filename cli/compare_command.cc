@@ -19,12 +19,8 @@ std::string Number(const bench::ResultSummary& result, const char* metric, doubl
   return text;
 }
 
-// What happened, in words that need no glossary.
 std::string Verdict(const bench::ResultSummary& result) {
-  if (result.outcome == "goal") return "reached the goal, touched nothing";
-  if (result.outcome == "collision") return "TOUCHED something";
-  if (result.outcome == "timeout") return "did not reach the goal in time";
-  return "found no plan";
+  return bench::Describe(result.outcome, !std::isnan(result.metrics.at("time_to_goal_s")));
 }
 
 int Compare(const std::vector<std::string>& folders) {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "sidestep/bench/sensor_watch.h"
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/wiring.h"
@@ -39,15 +40,13 @@ Belief Watch(Scene scene, const FieldOptions& options) {
   belief.world = std::move(scene.world);
   belief.model = sdf::MakeWorldModel(
       bench::MakeWorldModelOptions(scene.scenario, options.reach_m, belief.world));
-  bool has_seen = false;
-  while (belief.world.sensor->NextDue().seconds() <= options.time_s) {
-    belief.world.robot->AdvanceTo(belief.world.sensor->NextDue());
-    if (const std::optional<Scan> scan = belief.world.sensor->Read()) {
-      belief.model->Observe(*scan);
-      has_seen = true;
-    }
+  bench::SensorWatch sensor(*belief.world.sensor);
+  while (sensor.NextDue().seconds() <= options.time_s) {
+    const EpisodeTime now = sensor.NextDue();
+    belief.world.robot->AdvanceTo(now);
+    if (const std::optional<Scan> scan = sensor.Read(now)) belief.model->Observe(*scan);
   }
-  if (!has_seen) throw InputError("--time", "the sensor has seen nothing until then");
+  if (!sensor.has_seen()) throw InputError("--time", "the sensor has seen nothing until then");
   belief.t = EpisodeTime(options.time_s);
   belief.field = belief.model->MakeField();
   return belief;

@@ -34,14 +34,19 @@ void PrintSummary(const bench::EpisodeResult& result, const std::string& out) {
     return std::isnan(value) ? std::string("-") : std::string(text);
   };
   std::printf("outcome          %s\n", ToString(result.outcome).c_str());
+  if (!result.reason.empty()) std::printf("reason           %s\n", result.reason.c_str());
   std::printf("first contact    %s\n", number("first_contact_s", 1, "%.3f s").c_str());
   std::printf("least clearance  %s\n", number("min_clearance_m", 1e3, "%.1f mm").c_str());
   std::printf("time to goal     %s\n", number("time_to_goal_s", 1, "%.3f s").c_str());
   std::printf("GP cost          %s\n", number("gp_cost", 1, "%.2f").c_str());
   std::printf("jerk RMS         %s\n", number("jerk_rms", 1, "%.1f rad/s^3").c_str());
-  std::printf("planning cycle   %.1f ms CPU (median of %zu)\n",
-              1e3 * bench::Quantile(result.times.at("cycle"), 0.5),
-              result.times.at("cycle").size());
+  const std::vector<double>& cycle_s = result.times.at("cycle");
+  if (cycle_s.empty()) {
+    std::printf("planning cycle   - (there was none)\n");
+  } else {
+    std::printf("planning cycle   %.1f ms CPU (median of %zu)\n", 1e3 * bench::Quantile(cycle_s, 0.5),
+                cycle_s.size());
+  }
   std::printf("written          %s/result.json, %s/trace.h5\n", out.c_str(), out.c_str());
 }
 
@@ -67,6 +72,7 @@ int Run(const RunOptions& options) {
   } else {
     PrintSummary(result, out);
   }
+  bench::RequireWhole(result);  // what there is has been written
   return 0;
 }
 

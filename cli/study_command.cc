@@ -168,9 +168,10 @@ int Study(const StudyOptions& options) {
   const std::string table = bench::OutcomeTable(rows, options.down, options.across);
   bench::WriteTextFile(out + "/study.md", table);
   std::printf("%s\nwritten %s/study.csv, %s/study.md\n", table.c_str(), out.c_str(), out.c_str());
-  const bool failed = std::any_of(
-      rows.begin(), rows.end(), [](const bench::StudyRow& row) { return row.outcome == "failed"; });
-  return failed ? 1 : 0;
+  const bool all_whole = std::none_of(rows.begin(), rows.end(), [](const bench::StudyRow& row) {
+    return row.outcome == "failed" || row.outcome == ToString(bench::Outcome::kAborted);
+  });
+  return all_whole ? 0 : 1;
 }
 
 }  // namespace

@@ -60,16 +60,25 @@ Color ColorOf(Mood mood) {
 }
 
 Status StatusAt(const record::Recording& recording, EpisodeTime t) {
+  const auto outcome = recording.header.find("outcome");
+  const bool is_cut_off =
+      outcome != recording.header.end() && outcome->second == "aborted" && t >= record::EndOf(recording);
+  const std::string cut_off = is_cut_off ? "ABORTED at " + Seconds(record::EndOf(recording).seconds()) : "";
   const std::optional<record::Touch> touch = record::FirstTouch(recording, t);
   if (touch) {
     return {"CONTACT at " + Seconds(touch->t.seconds()) +
-                (touch->object.empty() ? "" : " with " + touch->object),
+                (touch->object.empty() ? "" : " with " + touch->object) +
+                (is_cut_off ? ", " + cut_off : ""),
             Mood::kBad};
   }
+  if (is_cut_off) return {cut_off, Mood::kBad};
   const std::optional<record::Clearance> least = record::LeastClearance(recording, t);
   const std::string least_text = least ? "least clearance " + Millimetres(least->clearance_m) : "";
   const auto goal = recording.metrics.find("time_to_goal_s");
   const bool knows_goal = goal != recording.metrics.end();
+  if (knows_goal && goal->second <= t.seconds() && recording.truth.empty()) {
+    return {"goal reached at " + Seconds(goal->second) + ", contact unjudged", Mood::kNeutral};
+  }
   if (knows_goal && goal->second <= t.seconds()) {
     return {"goal reached at " + Seconds(goal->second) + (least ? ", " + least_text : ""),
             Mood::kGood};

@@ -25,7 +25,8 @@ struct Status {
   Mood mood = Mood::kNeutral;
 };
 /// A contact stays in the status for good. The goal counts as reached at the metric
-/// `time_to_goal_s`.
+/// `time_to_goal_s`; without a truth nobody judged contact, and it says so. What was aborted says
+/// so at its end.
 Status StatusAt(const record::Recording& recording, EpisodeTime t);
 
 }  // namespace sidestep::render

@@ -22,8 +22,8 @@ class RobotInterface {
   /// @throws std::invalid_argument for a wrong shape or a value that is not finite.
   virtual void Submit(const Trajectory& trajectory, EpisodeTime start) = 0;
 
-  /// Brakes within its limits and stays there.
-  virtual void Hold() = 0;
+  /// Brakes within its limits and stays there. Cannot fail: it is what is left when all else has.
+  virtual void Hold() noexcept = 0;
 
   /// The simulator steps to time `t`; hardware waits for it. Never goes back.
   virtual void AdvanceTo(EpisodeTime t) = 0;

@@ -12,7 +12,8 @@ class Sensor {
   virtual ~Sensor() = default;
 
   /// When it has to be read next, because then it captures or a scan arrives: the loop advances the
-  /// robot to that time and calls Read. A time that has passed means: at once.
+  /// robot to that time and calls Read. A time that has passed means: at once; if there is nothing
+  /// to read then and the time stays in the past, it is asked again a millisecond later.
   virtual EpisodeTime NextDue() const = 0;
 
   /// The next scan that has arrived and has not been read before, if there is one; its time is that

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "sidestep/core/observations.h"
@@ -18,6 +19,10 @@ class WorldTruth {
 
   /// Every sample (100 Hz) since the last call. Contacts of all physics steps are in them.
   virtual std::vector<TruthSample> TakeSamples() = 0;
+
+  /// The first contact since the latest sample, if there was one, as a sample of that moment: an
+  /// episode may end before the next sample is due. None where contact is judged at samples alone.
+  virtual std::optional<TruthSample> ContactSinceLastSample() const { return std::nullopt; }
 };
 
 }  // namespace sidestep::robot

@@ -16,7 +16,7 @@ class NoRobot final : public robot::RobotInterface {
   JointState Read() const override { return {world_.time(), world_.q(), world_.v()}; }
   /// @throws std::invalid_argument always.
   void Submit(const Trajectory& trajectory, EpisodeTime start) override;
-  void Hold() override {}
+  void Hold() noexcept override {}
   void AdvanceTo(EpisodeTime t) override;
   std::vector<ControlSample> TakeControlLog() override { return {}; }
 

@@ -43,7 +43,7 @@ void SimulatedRobot::Submit(const Trajectory& trajectory, EpisodeTime start) {
   queue_.push_back({trajectory, start});
 }
 
-void SimulatedRobot::Hold() {
+void SimulatedRobot::Hold() noexcept {
   queue_.clear();
   motion_.reset();
 }

@@ -32,7 +32,7 @@ class SimulatedRobot final : public robot::RobotInterface {
   JointState Read() const override;
   /// As RobotInterface says. What was submitted before for `start` or later is dropped.
   void Submit(const Trajectory& trajectory, EpisodeTime start) override;
-  void Hold() override;
+  void Hold() noexcept override;
   /// Steps to the first tick that is not before `t`.
   void AdvanceTo(EpisodeTime t) override;
   /// One sample a tick: command and measurement at its beginning, the torque during it.

@@ -38,19 +38,23 @@ void SimulatedTruth::Observe() {
       deepest_pair = &pair;
     }
   }
+  const bool touched_before = pending_.in_contact;
   if (deepest_pair != nullptr) {
     NoteContact(GeomOwner(model, deepest_pair->other_geom), deepest);
   } else {
     NoteSelfContact();
   }
-  if (world_.ticks() % (World::kTicksPerSecond / kSamplesPerSecond) == 0) {
-    MeasureClearance(deepest_pair, deepest.depth_m);
-    pending_.t = world_.time();
-    for (const scenarios::MovingObstacle& obstacle : world_.obstacles()) {
-      pending_.X_WO.push_back(PoseAt(obstacle, world_.time()));
-    }
-    samples_.push_back(pending_);
-    pending_ = TruthSample();
+  const bool is_due = world_.ticks() % (World::kTicksPerSecond / kSamplesPerSecond) == 0;
+  if (is_due || pending_.in_contact != touched_before) Describe(deepest_pair, deepest.depth_m);
+  if (is_due) samples_.push_back(std::exchange(pending_, {}));
+}
+
+void SimulatedTruth::Describe(const Pair* deepest_pair, double deepest_m) {
+  MeasureClearance(deepest_pair, deepest_m);
+  pending_.t = world_.time();
+  pending_.X_WO.clear();
+  for (const scenarios::MovingObstacle& obstacle : world_.obstacles()) {
+    pending_.X_WO.push_back(PoseAt(obstacle, world_.time()));
   }
 }
 
@@ -111,6 +115,11 @@ std::vector<ObjectObservation> SimulatedTruth::ObstaclesAt(EpisodeTime t) const 
     obstacles.push_back(observation);
   }
   return obstacles;
+}
+
+std::optional<TruthSample> SimulatedTruth::ContactSinceLastSample() const {
+  if (!pending_.in_contact) return std::nullopt;
+  return pending_;
 }
 
 std::vector<TruthSample> SimulatedTruth::TakeSamples() { return std::exchange(samples_, {}); }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,6 +36,7 @@ class SimulatedTruth final : public robot::WorldTruth {
 
   /// As WorldTruth says. While a pair overlaps, clearance_m is minus the depth of the deepest one.
   std::vector<TruthSample> TakeSamples() override;
+  std::optional<TruthSample> ContactSinceLastSample() const override;
 
  private:
   struct Pair {
@@ -44,12 +46,14 @@ class SimulatedTruth final : public robot::WorldTruth {
   void NoteContact(const std::string& object, const Touch& touch);
   void NoteSelfContact();
   void MeasureClearance(const Pair* deepest_pair, double deepest_m);
+  void Describe(const Pair* deepest_pair, double deepest_m);
   void SetClearance(double clearance_m, const Pair& pair);
 
   const World& world_;
   GeomDistance distance_;
   std::vector<Pair> pairs_;
-  TruthSample pending_;  ///< collects what happens until the next sample
+  /// Collects what happens until the next sample; whole as soon as it holds a contact.
+  TruthSample pending_;
   std::vector<TruthSample> samples_;
 };
 

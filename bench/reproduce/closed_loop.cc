@@ -71,7 +71,9 @@ ClosedLoopStudy RunClosedLoopStudy(const scenarios::Scenario& scenario,
     scenarios::Scenario published =
         PublishedClosedLoop(scenario, options.speed_m_s, voxels_per_side);
     published.knowledge = knowledge;
-    return RunEpisode(published, robot, make_world);
+    EpisodeResult result = RunEpisode(published, robot, make_world);
+    RequireWhole(result);
+    return result;
   };
   study.update = run("execute_and_update", kMainGrid);
   study.prediction = run("prediction", kMainGrid);

@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
+#include "sidestep/bench/metrics/registry.h"
 #include "tests/bench/kinematic_world.h"
 #include "tests/support/planar_arm.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sidestep::bench {
 namespace {
@@ -74,21 +77,127 @@ TEST_F(Episode, OfARobotThatDoesNotMoveEndsAtTwiceTheHorizon) {
   EXPECT_NEAR(result.recording.control.back().t.seconds(), 4.0, 0.0015);
 }
 
-TEST_F(Episode, OfARobotThatSeesNothingGetsNoPlan) {
+TEST_F(Episode, OfARobotThatSeesNothingGetsNoPlanAndSaysWhy) {
   world_.sees = false;
   scenario_.moving_obstacles.clear();
   const EpisodeResult result = Run();
   EXPECT_EQ(result.outcome, Outcome::kPlannerFailed);
+  EXPECT_EQ(result.reason, "no scan has arrived");
+  EXPECT_EQ(result.recording.header.at("reason"), result.reason);
   EXPECT_TRUE(result.recording.cycles.empty());
+  EXPECT_TRUE(result.times.at("cycle").empty());
   EXPECT_TRUE(world_.submissions.empty());
 }
 
-TEST_F(Episode, WithoutATruthIsJudgedByTheGoalAlone) {
+TEST_F(Episode, ToAGoalOnWhichSomethingStandsSaysThatEveryPlanCollides) {
+  scenario_.moving_obstacles.clear();
+  scenario_.static_boxes = {{"on the goal", Pose::Translation({0.6, 0.6, 0}), {0.3, 0.3, 0.2}}};
+  const EpisodeResult result = Run();
+  EXPECT_EQ(result.outcome, Outcome::kPlannerFailed);
+  EXPECT_EQ(result.reason, "none of " + std::to_string(result.recording.cycles.size()) +
+                               " plans was accepted; the last one: in_collision");
+}
+
+TEST_F(Episode, WithoutATruthIsUnjudgedAndStillSaysWhenTheGoalWasReached) {
+  const EpisodeResult judged = Run();
   world_.judges = false;
   const EpisodeResult result = Run();
-  EXPECT_EQ(result.outcome, Outcome::kGoal);
+  EXPECT_EQ(result.outcome, Outcome::kUnjudged);
+  EXPECT_EQ(result.recording.header.at("outcome"), "unjudged");
   EXPECT_TRUE(result.recording.truth.empty());
   EXPECT_TRUE(std::isnan(result.recording.metrics.at("min_clearance_m")));
+  EXPECT_EQ(result.recording.metrics.at("time_to_goal_s"),
+            judged.recording.metrics.at("time_to_goal_s"));
+}
+
+TEST_F(Episode, HoldsTheRobotWhenItEnds) {
+  Run();
+  EXPECT_TRUE(world_.holds);
+}
+
+TEST_F(Episode, GoesOnWithWhatItKnowsWhenAnOverdueSensorHasNothingMoreToGive) {
+  world_.falls_silent_at_s = 0.5;
+  scenario_.moving_obstacles.clear();
+  const EpisodeResult result = Run();
+  EXPECT_EQ(result.outcome, Outcome::kGoal);
+  EXPECT_NEAR(result.recording.observations.back().t.seconds(), 0.5, 1.0 / 30);
+  // Once a millisecond, until the end.
+  const double silent_s = result.recording.control.back().t.seconds() - 0.5;
+  EXPECT_NEAR(world_.empty_reads, 1000 * silent_s, 5);
+}
+
+struct Failure {
+  const char* who;
+  double at_s;
+};
+std::ostream& operator<<(std::ostream& stream, const Failure& f) {
+  return stream << f.who << " at " << f.at_s << " s";
+}
+
+class EpisodeThatFails : public Episode, public ::testing::WithParamInterface<Failure> {
+ protected:
+  // The observer is shown each planning cycle; the others are the world's.
+  EpisodeResult RunUntilItBreaks() {
+    const auto [who, at_s] = GetParam();
+    world_.breaks = who;
+    world_.breaks_at_s = at_s;
+    return RunEpisode(scenario_, arm_, world_.Factory(),
+                      [&](EpisodeTime t, const auto&, const robot::WorldTruth*) {
+                        if (world_.breaks == "observer" && t.seconds() >= world_.breaks_at_s) {
+                          throw std::runtime_error("the observer broke");
+                        }
+                      });
+  }
+};
+
+TEST_P(EpisodeThatFails, IsAbortedWithItsReasonAndTheRobotHeld) {
+  const EpisodeResult result = RunUntilItBreaks();
+  EXPECT_EQ(result.outcome, Outcome::kAborted);
+  EXPECT_EQ(result.reason, std::string("the ") + GetParam().who + " broke");
+  EXPECT_EQ(result.recording.header.at("outcome"), "aborted");
+  EXPECT_EQ(result.recording.header.at("reason"), result.reason);
+  EXPECT_TRUE(world_.holds);
+  EXPECT_THROW(RequireWhole(result), std::runtime_error);
+}
+
+TEST_P(EpisodeThatFails, KeepsWhatHappenedUntilThen) {
+  const EpisodeResult result = RunUntilItBreaks();
+  const double at_s = GetParam().at_s;
+  const record::Recording& recording = result.recording;
+  if (at_s == 0) {
+    EXPECT_LE(recording.control.size(), 1u);
+  } else {
+    EXPECT_NEAR(recording.control.back().t.seconds(), at_s, 0.1);
+    EXPECT_NEAR(recording.truth.back().t.seconds(), at_s, 0.1);
+  }
+  EXPECT_EQ(recording.metrics.size(), Metrics().size());
+  const TemporaryFolder folder;
+  record::WriteRecording(recording, folder.path() / "trace.h5");
+  EXPECT_EQ(record::ReadRecording(folder.path() / "trace.h5").control.size(),
+            recording.control.size());
+}
+
+INSTANTIATE_TEST_SUITE_P(OnTheWay, EpisodeThatFails,
+                         ::testing::Values(Failure{"robot", 0}, Failure{"robot", 0.7123},
+                                           Failure{"sensor", 0}, Failure{"sensor", 0.7},
+                                           Failure{"truth", 0.7}, Failure{"observer", 0.7}));
+
+TEST_F(Episode, ThatFailsAfterAContactKeepsTheContact) {
+  scenario_.knowledge = "static";
+  const double contact_s = Run().recording.metrics.at("first_contact_s");
+  world_.breaks = "robot";
+  world_.breaks_at_s = contact_s + 0.02;
+  const EpisodeResult result = Run();
+  EXPECT_EQ(result.outcome, Outcome::kAborted);
+  EXPECT_EQ(result.recording.metrics.at("first_contact_s"), contact_s);
+}
+
+TEST_F(Episode, WhoseWorldCannotBeMadeIsNone) {
+  const WorldFactory none = [](const scenarios::Scenario&,
+                               const robot::RobotModel&) -> EpisodeWorld {
+    throw std::runtime_error("no world");
+  };
+  EXPECT_THROW(RunEpisode(scenario_, arm_, none), std::runtime_error);
 }
 
 struct Timing {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "sidestep/core/shape.h"
@@ -14,6 +15,11 @@ namespace sidestep::bench {
 namespace {
 
 constexpr int kTicksPerSecond = 1000, kTicksPerSample = 10;
+
+void BreakIfAsked(const KinematicWorld& world, const std::string& who, EpisodeTime now) {
+  if (world.breaks != who || now.seconds() < world.breaks_at_s) return;
+  throw std::runtime_error("the " + who + " broke");
+}
 
 struct Solid {
   Shape shape;
@@ -74,14 +80,21 @@ class Robot final : public robot::RobotInterface {
 
   void Submit(const Trajectory& trajectory, EpisodeTime start) override {
     world_.submissions.push_back({now(), start});
+    world_.holds = false;
     trajectory_ = trajectory;
     start_ = start;
   }
 
-  void Hold() override { trajectory_.reset(); }
+  void Hold() noexcept override {
+    trajectory_.reset();
+    world_.holds = true;
+  }
 
   void AdvanceTo(EpisodeTime t) override {
-    while (now().seconds() < t.seconds() - 1e-9) Tick();
+    while (now().seconds() < t.seconds() - 1e-9) {
+      BreakIfAsked(world_, "robot", now());
+      Tick();
+    }
   }
 
   std::vector<ControlSample> TakeControlLog() override {
@@ -115,7 +128,7 @@ class Robot final : public robot::RobotInterface {
 // Sees the centre of every filled cell.
 class CellSensor final : public robot::Sensor {
  public:
-  CellSensor(const KinematicWorld& world, const scenarios::Scenario& scenario)
+  CellSensor(KinematicWorld& world, const scenarios::Scenario& scenario)
       : world_(world), scenario_(scenario), shapes_(scenario) {}
 
   EpisodeTime NextDue() const override {
@@ -125,6 +138,11 @@ class CellSensor final : public robot::Sensor {
 
   std::optional<Scan> Read() override {
     const EpisodeTime t = NextDue();
+    BreakIfAsked(world_, "sensor", t);
+    if (t.seconds() >= world_.falls_silent_at_s) {
+      ++world_.empty_reads;
+      return std::nullopt;
+    }
     ++num_scans_;
     const std::vector<Solid> solids = shapes_.SolidsAt(t);
     std::vector<Eigen::Vector3d> points;
@@ -147,7 +165,7 @@ class CellSensor final : public robot::Sensor {
   }
 
  private:
-  const KinematicWorld& world_;
+  KinematicWorld& world_;
   const scenarios::Scenario& scenario_;
   Shapes shapes_;
   int num_scans_ = 0;
@@ -156,9 +174,9 @@ class CellSensor final : public robot::Sensor {
 // Judges by the robot's spheres, the mounted one left out.
 class SphereTruth final : public robot::WorldTruth {
  public:
-  SphereTruth(const Robot& robot, const robot::RobotModel& model,
+  SphereTruth(const KinematicWorld& world, const Robot& robot, const robot::RobotModel& model,
               const scenarios::Scenario& scenario)
-      : robot_(robot), model_(model), shapes_(scenario) {}
+      : world_(world), robot_(robot), model_(model), shapes_(scenario) {}
 
   std::vector<ObjectObservation> ObstaclesAt(EpisodeTime t) const override {
     return shapes_.MovingAt(t);
@@ -168,6 +186,7 @@ class SphereTruth final : public robot::WorldTruth {
     std::vector<TruthSample> samples;
     for (; judged_ < robot_.history().size(); judged_ += kTicksPerSample) {
       const ControlSample& tick = robot_.history()[judged_];
+      BreakIfAsked(world_, "truth", tick.t);
       TruthSample& sample = samples.emplace_back();
       sample.t = tick.t;
       sample.clearance_m = std::numeric_limits<double>::infinity();
@@ -185,6 +204,7 @@ class SphereTruth final : public robot::WorldTruth {
   }
 
  private:
+  const KinematicWorld& world_;
   const Robot& robot_;
   const robot::RobotModel& model_;
   Shapes shapes_;
@@ -193,7 +213,9 @@ class SphereTruth final : public robot::WorldTruth {
 
 struct Stage {
   Stage(KinematicWorld& world, const scenarios::Scenario& scenario, const robot::RobotModel& model)
-      : robot(world, scenario.q_start), sensor(world, scenario), truth(robot, model, scenario) {}
+      : robot(world, scenario.q_start),
+        sensor(world, scenario),
+        truth(world, robot, model, scenario) {}
   Robot robot;
   CellSensor sensor;
   SphereTruth truth;
@@ -209,6 +231,7 @@ WorldFactory KinematicWorld::Factory() {
     world.robot = &stage->robot;
     world.sensor = &stage->sensor;
     if (judges) world.truth = &stage->truth;
+    world.joints = model.joint_names();
     for (const scenarios::MovingObstacle& obstacle : scenario.moving_obstacles) {
       world.obstacles.push_back(obstacle.name);
     }

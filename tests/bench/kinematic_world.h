@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+#include <string>
 #include <vector>
 
 #include "sidestep/bench/episode.h"
@@ -12,11 +14,20 @@ struct KinematicWorld {
   bool sees = true;    ///< false: its sensor never captures anything
   bool judges = true;  ///< false: there is no WorldTruth, as on hardware
 
+  /// Who throws, from `breaks_at_s` on: "robot" (in AdvanceTo), "sensor", "truth"; empty: nobody.
+  std::string breaks;
+  double breaks_at_s = 0;
+
+  /// From then on the sensor has nothing more to give, though it says that it is overdue.
+  double falls_silent_at_s = std::numeric_limits<double>::infinity();
+
   /// What the loop did: at `when`, it submitted a trajectory to be followed from `start`.
   struct Submission {
     EpisodeTime when, start;
   };
   std::vector<Submission> submissions;
+  bool holds = false;   ///< the robot was told to, and to nothing else since
+  int empty_reads = 0;  ///< how often the sensor had nothing to give
 
   /// For RunEpisode; this world, its scenario and its robot must outlive the episode.
   WorldFactory Factory();

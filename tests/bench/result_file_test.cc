@@ -47,11 +47,33 @@ class ResultFile : public ::testing::Test {
 TEST_F(ResultFile, IsReadBackAsItWasWritten) {
   WriteTextFile(path_, ResultJson(SomeResult(), SomeScenario(), {{"mujoco", "2.2.2"}}));
   const ResultSummary summary = ReadResult(path_);
-  EXPECT_EQ(summary.outcome, "collision");
+  EXPECT_EQ(summary.outcome, Outcome::kCollision);
   EXPECT_EQ(summary.knowledge, "prediction");
   EXPECT_EQ(summary.metrics.at("gp_cost"), 1.5);
   EXPECT_TRUE(std::isnan(summary.metrics.at("time_to_goal_s")));
   EXPECT_DOUBLE_EQ(summary.cycle_p50_ms, 2);
+}
+
+TEST_F(ResultFile, OfAnAbortedRunIsReadBackThoughItHadNoPlanningCycle) {
+  EpisodeResult result = SomeResult();
+  result.outcome = Outcome::kAborted;
+  result.reason = "the robot's \"power\" failed";
+  result.times["cycle"].clear();
+  WriteTextFile(path_, ResultJson(result, SomeScenario(), {}));
+  const ResultSummary summary = ReadResult(path_);
+  EXPECT_EQ(summary.outcome, Outcome::kAborted);
+  EXPECT_TRUE(std::isnan(summary.cycle_p50_ms));
+  const auto json = nlohmann::json::parse(ResultJson(result, SomeScenario(), {}));
+  EXPECT_EQ(json["reason"], result.reason);
+  EXPECT_TRUE(
+      nlohmann::json::parse(ResultJson(SomeResult(), SomeScenario(), {}))["reason"].is_null());
+}
+
+TEST_F(ResultFile, OfAnUnknownOutcomeIsRefused) {
+  auto json = nlohmann::json::parse(ResultJson(SomeResult(), SomeScenario(), {}));
+  json["outcome"] = "success";
+  WriteTextFile(path_, json.dump());
+  EXPECT_EQ(Complaint(), path_ + ": is not a whole result: no outcome is 'success'");
 }
 
 TEST_F(ResultFile, KeepsEverythingThatMayDifferUnderOneKey) {

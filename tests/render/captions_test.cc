@@ -60,6 +60,29 @@ TEST(Captions, SayThatTheGoalWasNotReachedOnlyAtTheEnd) {
   EXPECT_EQ(StatusAt(recording, EpisodeTime(2.0)).mood, Mood::kNear);
 }
 
+TEST(Captions, OfAnAbortedRunSaySoAtItsEnd) {
+  record::Recording recording = MakeSampleRecording({});
+  recording.header["outcome"] = "aborted";
+  EXPECT_EQ(StatusAt(recording, EpisodeTime(1.5)).mood, Mood::kNeutral);
+  EXPECT_EQ(StatusAt(recording, EpisodeTime(2.0)).text, "ABORTED at 2.00 s");
+  EXPECT_EQ(StatusAt(recording, EpisodeTime(2.0)).mood, Mood::kBad);
+  SampleEpisode with_contact;
+  with_contact.contact = true;
+  recording = MakeSampleRecording(with_contact);
+  recording.header["outcome"] = "aborted";
+  EXPECT_EQ(StatusAt(recording, EpisodeTime(1.5)).text, "CONTACT at 1.00 s with trolley");
+  EXPECT_EQ(StatusAt(recording, EpisodeTime(2.0)).text,
+            "CONTACT at 1.00 s with trolley, ABORTED at 2.00 s");
+}
+
+TEST(Captions, DoNotPraiseAGoalWhereNobodyJudgedContact) {
+  record::Recording recording = MakeSampleRecording({});
+  recording.truth.clear();
+  EXPECT_EQ(StatusAt(recording, EpisodeTime(1.95)).text,
+            "goal reached at 1.90 s, contact unjudged");
+  EXPECT_EQ(StatusAt(recording, EpisodeTime(1.95)).mood, Mood::kNeutral);
+}
+
 TEST(Captions, AreSilentAboutWhatWasNotRecorded) {
   EXPECT_EQ(StatusAt(record::Recording(), EpisodeTime(0)).text, "");
 }

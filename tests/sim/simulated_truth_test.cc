@@ -130,6 +130,35 @@ TEST(SimulatedTruth, SeesABriefContactBetweenItsSamples) {
   EXPECT_NEAR(FirstContact(samples)->contact_s, (1.0 - half_way) / 8, 0.0011);
 }
 
+TEST(SimulatedTruth, TellsOfAContactThatNoSampleHoldsYet) {
+  scenarios::Scenario scenario = TwoLinkScenario();
+  scenario.moving_obstacles = {Passing("guest", Sphere{0.1}, {1, 0, 0.3}, {-1, 0, 0}, 1)};
+  Simulation simulation(scenario, TwoLink(scenario), kTestModels);
+  simulation.robot().AdvanceTo(EpisodeTime(0.2495));  // it is there after 0.25 s
+  EXPECT_FALSE(simulation.truth().ContactSinceLastSample().has_value());
+  simulation.robot().AdvanceTo(EpisodeTime(0.255));
+  EXPECT_EQ(FirstContact(simulation.truth().TakeSamples()), nullptr);
+  const auto contact = simulation.truth().ContactSinceLastSample();
+  ASSERT_TRUE(contact.has_value());
+  EXPECT_TRUE(contact->in_contact);
+  EXPECT_EQ(contact->t.seconds(), contact->contact_s);
+  EXPECT_NEAR(contact->contact_s, 0.25, 0.0011);
+  EXPECT_EQ(contact->contact_object, "guest");
+  EXPECT_EQ(contact->nearest_object, "guest");
+  EXPECT_LE(contact->clearance_m, 0);
+  EXPECT_GE(contact->clearance_m, -0.0011);
+  ASSERT_THAT(contact->X_WO, testing::SizeIs(1));
+  EXPECT_NEAR(contact->X_WO[0].translation().x(), 1 - contact->contact_s, 1e-12);
+
+  simulation.robot().AdvanceTo(EpisodeTime(0.26));
+  const std::vector<TruthSample> samples = simulation.truth().TakeSamples();
+  ASSERT_THAT(samples, testing::SizeIs(1));
+  EXPECT_EQ(samples[0].contact_s, contact->contact_s);
+  EXPECT_EQ(samples[0].t.seconds(), 0.26);
+  EXPECT_LT(samples[0].clearance_m, contact->clearance_m);
+  EXPECT_FALSE(simulation.truth().ContactSinceLastSample().has_value());
+}
+
 TEST(SimulatedTruth, JudgesTheFixedBaseAgainstWhatMoves) {
   // MuJoCo itself never looks for contacts between the foot, which is bolted to the world, and an
   // obstacle that follows a path.

@@ -1,0 +1,65 @@
+#include "sidestep/bench/outcome.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+namespace sidestep::bench {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
+
+struct Case {
+  const char* name;
+  bool has_truth;
+  double first_contact_s;
+  bool reached;
+  double plans_accepted;
+  Outcome outcome;
+};
+std::ostream& operator<<(std::ostream& stream, const Case& c) { return stream << c.name; }
+
+class JudgedOutcome : public ::testing::TestWithParam<Case> {};
+
+TEST_P(JudgedOutcome, IsTheFirstThatIsTrue) {
+  const Case& c = GetParam();
+  record::Recording recording;
+  recording.truth.resize(c.has_truth ? 1 : 0);
+  recording.metrics = {{"first_contact_s", c.first_contact_s},
+                       {"plans_accepted", c.plans_accepted}};
+  EXPECT_EQ(ToString(Judge(recording, c.reached)), ToString(c.outcome));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, JudgedOutcome,
+    ::testing::Values(Case{"AContactAtTheGoal", true, 1.0, true, 3, Outcome::kCollision},
+                      Case{"AContactWithoutAPlan", true, 1.0, false, 0, Outcome::kCollision},
+                      Case{"TheGoal", true, kNever, true, 3, Outcome::kGoal},
+                      Case{"TheGoalWithoutATruth", false, kNever, true, 3, Outcome::kUnjudged},
+                      Case{"NoGoalWithoutATruth", false, kNever, false, 3, Outcome::kUnjudged},
+                      Case{"NoPlanWithoutATruth", false, kNever, false, 0, Outcome::kUnjudged},
+                      Case{"StandingAtTheGoalFromTheStart", true, kNever, true, 0, Outcome::kGoal},
+                      Case{"NoGoal", true, kNever, false, 3, Outcome::kTimeout},
+                      Case{"NoPlan", true, kNever, false, 0, Outcome::kPlannerFailed}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+TEST(Outcome, IsReadBackFromItsWord) {
+  for (const Outcome outcome : kAllOutcomes) {
+    EXPECT_EQ(OutcomeFromString(ToString(outcome)), outcome);
+  }
+  EXPECT_FALSE(OutcomeFromString("success").has_value());
+}
+
+TEST(Outcome, IsDescribedInWordsOfItsOwn) {
+  for (const Outcome one : kAllOutcomes) {
+    EXPECT_LE(Describe(one, true).size(), 34u) << "the column of `sidestep compare`";
+    for (const Outcome other : kAllOutcomes) {
+      EXPECT_EQ(one == other, Describe(one, true) == Describe(other, true));
+    }
+  }
+  EXPECT_NE(Describe(Outcome::kUnjudged, true), Describe(Outcome::kUnjudged, false));
+}
+
+}  // namespace
+}  // namespace sidestep::bench
