@@ -17,6 +17,10 @@ class GaussNewtonPlanner final : public Planner {
   /// @throws std::invalid_argument for settings out of range.
   GaussNewtonPlanner(const robot::RobotModel& robot, const PlannerSettings& settings);
 
+  PlannerCapabilities capabilities() const override {
+    return {.reaches_goal = true, .avoids_obstacles = true};
+  }
+
  private:
   PlanResult DoPlan(const PlanRequest& request) const override;
 

@@ -26,6 +26,10 @@ class GpPlanner final : public Planner {
   /// @throws std::invalid_argument for settings out of range.
   GpPlanner(const robot::RobotModel& robot, const PlannerSettings& settings);
 
+  PlannerCapabilities capabilities() const override {
+    return {.reaches_goal = true, .avoids_obstacles = true};
+  }
+
  private:
   PlanResult DoPlan(const PlanRequest& request) const override;
   enum class Stages {

@@ -54,13 +54,22 @@ struct PlanResult {
   LimitUse limit_use;   ///< of the free part
 };
 
-/// Request in, result out; no hidden state: equal requests give equal bits.
+/// What a planner can do beyond what every planner promises; tests hold it to what it declares.
+struct PlannerCapabilities {
+  bool reaches_goal = false;      ///< its plans end at the goal, at rest, whatever is in the way
+  bool avoids_obstacles = false;  ///< it looks for a plan that is free
+};
+
+/// Request in, result out; no hidden state: equal requests give equal bits. Every planner answers
+/// on the request's grid with finite numbers, leaves fixed states as they are, and says whether its
+/// plan touches something.
 class Planner {
  public:
   virtual ~Planner() = default;
   /// @throws std::invalid_argument for a wrong shape, a value that is not finite, no field, ...
   PlanResult Plan(const PlanRequest& request) const;
 
+  virtual PlannerCapabilities capabilities() const { return {}; }
   const robot::RobotModel& robot() const { return robot_; }
 
  protected:

@@ -13,6 +13,8 @@ class StraightLinePlanner final : public Planner {
  public:
   explicit StraightLinePlanner(const robot::RobotModel& robot) : Planner(robot) {}
 
+  PlannerCapabilities capabilities() const override { return {.reaches_goal = true}; }
+
  private:
   PlanResult DoPlan(const PlanRequest& request) const override;
 };

@@ -20,9 +20,11 @@ class HoldStillPlanner final : public Planner {
     trajectory.q = request.q_start.replicate(1, num_states);
     trajectory.v = Eigen::MatrixXd::Zero(n, num_states);
     trajectory.v.col(0) = request.v_start;
-    if (request.initial) {  // What the robot does in any case is not the planner's to change.
-      trajectory.q.leftCols(request.num_fixed) = request.initial->q.leftCols(request.num_fixed);
-      trajectory.v.leftCols(request.num_fixed) = request.initial->v.leftCols(request.num_fixed);
+    if (request.num_fixed > 1 && request.initial) {  // What the robot will do in any case stays.
+      const int last = request.num_fixed - 1;
+      trajectory.q = request.initial->q.col(last).replicate(1, num_states);
+      trajectory.q.leftCols(last) = request.initial->q.leftCols(last);
+      trajectory.v.leftCols(last + 1) = request.initial->v.leftCols(last + 1);
     }
     return MakeResult(request, trajectory, /*converged=*/true);
   }
