@@ -2,7 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -19,6 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
+
+constexpr double kRounded = 0.501;  // of the last digit that is printed
 
 std::string Slurp(const fs::path& path) {
   std::ifstream stream(path, std::ios::binary);
@@ -43,34 +47,81 @@ class Walkway : public ::testing::Test {
   const fs::path folder_ = temporary_.path();
 };
 
-class WalkwayAtSpeed : public Walkway, public ::testing::WithParamInterface<std::string> {};
+// One cell of the first table of docs/walkway.md, as it is printed there: "51 mm, 2.998 s", or
+// "touched at 1.72 s".
+struct Promise {
+  std::string speed, knowledge, text;
+};
+std::ostream& operator<<(std::ostream& stream, const Promise& promise) {
+  return stream << promise.speed << " m/s, " << promise.knowledge << ": " << promise.text;
+}
 
-TEST_P(WalkwayAtSpeed, PredictionAndFullKnowledgeTouchNothingAndReachTheGoalInTime) {
-  for (const char* const knowledge : {"prediction", "full_knowledge"}) {
-    const Json result = Run(knowledge, {"--speed", GetParam(), "--knowledge", knowledge});
-    EXPECT_EQ(result["outcome"], "goal") << knowledge;
-    EXPECT_TRUE(result["first_contact_s"].is_null()) << knowledge;
-    EXPECT_GT(result["min_clearance_m"].get<double>(), 0) << knowledge;
-    ASSERT_TRUE(result["time_to_goal_s"].is_number()) << knowledge;
-    EXPECT_LE(result["time_to_goal_s"].get<double>(), 3.0) << knowledge;
+std::vector<std::string> CellsOf(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream stream(line);
+  std::string cell;
+  std::getline(stream, cell, '|');  // what stands before the first bar
+  while (std::getline(stream, cell, '|')) {
+    const std::size_t first = cell.find_first_not_of(" `"), last = cell.find_last_not_of(" `");
+    cells.push_back(first == std::string::npos ? "" : cell.substr(first, last - first + 1));
+  }
+  return cells;
+}
+
+std::vector<Promise> Promises() {
+  std::istringstream page(Slurp(SIDESTEP_SOURCE_DIR "/docs/walkway.md"));
+  std::string line;
+  while (std::getline(page, line) && line.rfind("| speed [m/s] |", 0) != 0) {
+  }
+  const std::vector<std::string> knowledge = CellsOf(line);
+  std::getline(page, line);  // the rule below the header
+  std::vector<Promise> promises;
+  while (std::getline(page, line) && line.rfind("|", 0) == 0) {
+    const std::vector<std::string> cells = CellsOf(line);
+    for (std::size_t i = 1; i < cells.size(); ++i) {
+      promises.push_back({cells[0], knowledge.at(i), cells[i]});
+    }
+  }
+  return promises;
+}
+
+class WalkwayPromise : public Walkway, public ::testing::WithParamInterface<Promise> {};
+
+TEST_P(WalkwayPromise, IsKeptToTheDigitsThatArePrinted) {
+  const auto& [speed, knowledge, text] = GetParam();
+  const Json result = Run(knowledge, {"--speed", speed, "--knowledge", knowledge});
+  double clearance_mm = 0, goal_s = 0, contact_s = 0;
+  if (std::sscanf(text.c_str(), "touched at %lf s", &contact_s) == 1) {
+    EXPECT_EQ(result["outcome"], "collision");
+    ASSERT_TRUE(result["first_contact_s"].is_number());
+    EXPECT_NEAR(result["first_contact_s"].get<double>(), contact_s, kRounded * 0.01);
+    EXPECT_LE(result["min_clearance_m"].get<double>(), 0);
+  } else {
+    ASSERT_EQ(std::sscanf(text.c_str(), "%lf mm, %lf s", &clearance_mm, &goal_s), 2) << text;
+    EXPECT_EQ(result["outcome"], "goal");
+    EXPECT_TRUE(result["first_contact_s"].is_null());
+    EXPECT_NEAR(1e3 * result["min_clearance_m"].get<double>(), clearance_mm, kRounded);
+    ASSERT_TRUE(result["time_to_goal_s"].is_number());
+    EXPECT_NEAR(result["time_to_goal_s"].get<double>(), goal_s, kRounded * 0.001);
+    EXPECT_LE(result["time_to_goal_s"].get<double>(), 3.0);
   }
 }
 
-TEST_P(WalkwayAtSpeed, WithoutKnowingThatItMovesTheArmTouchesTheHsr) {
-  const Json result = Run("static", {"--speed", GetParam(), "--knowledge", "static"});
-  EXPECT_EQ(result["outcome"], "collision");
-  EXPECT_TRUE(result["first_contact_s"].is_number());
-  EXPECT_LE(result["min_clearance_m"].get<double>(), 0);
-}
-
-INSTANTIATE_TEST_SUITE_P(MetresASecond, WalkwayAtSpeed,
-                         ::testing::Values("1.0", "1.1", "1.2", "1.3", "1.4", "1.5", "1.6", "1.7",
-                                           "1.8", "1.9", "2.0"),
+INSTANTIATE_TEST_SUITE_P(OfTheDocumentation, WalkwayPromise, ::testing::ValuesIn(Promises()),
                          [](const auto& test) {
-                           std::string name = "v" + test.param;
-                           name[2] = '_';
+                           std::string name = "v" + test.param.speed + "_" + test.param.knowledge;
+                           std::replace(name.begin(), name.end(), '.', '_');
                            return name;
                          });
+
+TEST(WalkwayDocumentation, PromisesThatKnowingTheFutureIsWhatKeepsTheArmFree) {
+  const std::vector<Promise> promises = Promises();
+  EXPECT_EQ(promises.size(), 44u);  // 11 speeds, 4 kinds of knowledge
+  for (const Promise& promise : promises) {
+    const bool knows = promise.knowledge == "prediction" || promise.knowledge == "full_knowledge";
+    EXPECT_EQ(promise.text.find("touched") == std::string::npos, knows) << promise;
+  }
+}
 
 TEST_F(Walkway, EqualRunsGiveEqualBytesUnderAnyLoad) {
   Json first = Run("first", {});
