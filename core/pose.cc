@@ -7,10 +7,14 @@
 namespace sidestep {
 
 Pose::Pose(const Eigen::Quaterniond& R_AB, const Eigen::Vector3d& p_AB) : R_AB_(R_AB), p_AB_(p_AB) {
-  const double norm = R_AB.norm();
-  if (!(norm > 0) || !R_AB.coeffs().allFinite() || !p_AB.allFinite()) {
+  const double largest = R_AB.coeffs().cwiseAbs().maxCoeff();
+  if (!(largest > 0) || !R_AB.coeffs().allFinite() || !p_AB.allFinite()) {
     throw std::invalid_argument("Pose: the rotation must not be zero, every number finite");
   }
+  constexpr double kSquarable =
+      1e150;  // squares of larger numbers overflow, of smaller ones vanish
+  if (largest > kSquarable || largest < 1 / kSquarable) R_AB_.coeffs() /= largest;
+  const double norm = R_AB_.norm();
   // What is normalised already keeps its bits, so that a pose survives being stored and read back.
   constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
   if (std::abs(norm - 1) > kRounding) R_AB_.coeffs() /= norm;

@@ -224,7 +224,16 @@ struct YamlReader::Node {
       FailAt(node, key, "must be a number, is " + Quote(text));
     }
     if (!std::isfinite(value)) FailAt(node, key, "must be finite, is " + text);
+    if (std::abs(value) > kLargestNumber) {
+      FailAt(node, key, "must be from -1e12 to 1e12, is " + text);
+    }
     return value;
+  }
+  void CheckPositive(double value, const YAML::Node& node, const std::string& key) const {
+    if (!(value > 0)) FailAt(node, key, "must be > 0, is " + node.Scalar());
+    if (value < 1 / kLargestNumber) {
+      FailAt(node, key, "must be at least 1e-12, is " + node.Scalar());
+    }
   }
   std::unique_ptr<Node> Child(const YAML::Node& node, const std::string& key) const {
     if (!node.IsMap()) FailAt(node, key, "must be a map, is " + Describe(node));
@@ -318,7 +327,7 @@ double YamlReader::GetDouble(const std::string& key) const {
 
 double YamlReader::GetPositive(const std::string& key) const {
   const double value = GetDouble(key);
-  if (!(value > 0)) Fail(key, "must be > 0, is " + node_->Find(key).Scalar());
+  node_->CheckPositive(value, node_->Find(key), key);
   return value;
 }
 
@@ -350,10 +359,7 @@ Eigen::Vector3d YamlReader::GetVector3(const std::string& key) const { return Ge
 Eigen::Vector3d YamlReader::GetPositiveVector3(const std::string& key) const {
   const Eigen::Vector3d value = GetVector3(key);
   for (int i = 0; i < 3; ++i) {
-    if (!(value(i) > 0)) {
-      const YAML::Node item = node_->Find(key)[i];
-      node_->FailAt(item, key + "[" + std::to_string(i) + "]", "must be > 0, is " + item.Scalar());
-    }
+    node_->CheckPositive(value(i), node_->Find(key)[i], key + "[" + std::to_string(i) + "]");
   }
   return value;
 }

@@ -16,6 +16,11 @@ namespace sidestep {
 /// Keys are reported by their path, e.g. `moving_obstacles[0].motion.linear.speed_m_s`.
 class YamlReader {
  public:
+  /// Every number lies between minus this and this, whatever its unit, and one that must be > 0 is
+  /// at least 1 / this: no length, time or gain is beyond, and neither squares and norms of what
+  /// was read nor products of a few of them overflow or vanish.
+  static constexpr double kLargestNumber = 1e12;
+
   /// Reads a whole file, whose top must be a map.
   /// @throws InputError if it is missing, a directory, over 1 MiB, not text, or not YAML.
   static YamlReader FromFile(const std::string& path);
@@ -31,10 +36,10 @@ class YamlReader {
   std::string GetString(const std::string& key) const;
   bool GetBool(const std::string& key) const;
   int GetInt(const std::string& key) const;
-  double GetDouble(const std::string& key) const;  ///< finite
-  double GetPositive(const std::string& key) const;
+  double GetDouble(const std::string& key) const;    ///< at most kLargestNumber in size
+  double GetPositive(const std::string& key) const;  ///< at least 1 / kLargestNumber
   double GetNonNegative(const std::string& key) const;
-  std::vector<double> GetDoubles(const std::string& key) const;  ///< each finite, any length
+  std::vector<double> GetDoubles(const std::string& key) const;  ///< each as GetDouble, any length
   Eigen::VectorXd GetVector(const std::string& key, int length) const;
   Eigen::Vector3d GetVector3(const std::string& key) const;
   Eigen::Vector3d GetPositiveVector3(const std::string& key) const;

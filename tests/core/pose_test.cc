@@ -123,5 +123,14 @@ TEST(Pose, StaysARotationOverLongProducts) {
   EXPECT_NEAR(X.rotation().norm(), 1, kTight);
 }
 
+TEST(Pose, NormalisesRotationsOfAnyLength) {
+  const Eigen::Quaterniond unit(0.5, -0.5, 0.5, 0.5);
+  for (const double length : {1e-320, 1e-200, 1e-155, 1e-9, 3.0, 1e155, 1e200, 1.5e308}) {
+    const Eigen::Quaterniond R(unit.coeffs() * length);
+    EXPECT_TRUE(Pose(R, Eigen::Vector3d::Zero()).rotation().isApprox(unit, 1e-3)) << length;
+    EXPECT_NEAR(Pose(R, Eigen::Vector3d::Zero()).rotation().norm(), 1, 1e-15) << length;
+  }
+}
+
 }  // namespace
 }  // namespace sidestep
