@@ -92,10 +92,10 @@ void VaryObstacles(scenarios::Scenario& scenario, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   const double speed_factor = std::uniform_real_distribution<double>(0.75, 1.3)(generator);
   const double delay_s = std::uniform_real_distribution<double>(0, 0.5)(generator);
+  scenarios::ScaleSpeeds(scenario, speed_factor);
   for (scenarios::MovingObstacle& obstacle : scenario.moving_obstacles) {
     std::visit(
         [&](auto& motion) {
-          motion.speed_m_s *= speed_factor;
           motion.begin_at_s += delay_s;
           motion.stop_at_s += delay_s;
         },

@@ -30,8 +30,9 @@ StudyRow RunStudyEpisode(const scenarios::Scenario& scenario, const robot::Robot
 StudyRow RunStudySearch(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
                         int max_guesses, const std::map<std::string, std::string>& factors);
 
-/// Makes all moving obstacles faster or slower by one factor from 0.75 to 1.3 and lets them all
-/// begin later by up to 0.5 s: what a seed changes of an episode besides random walks.
+/// Makes all moving obstacles faster or slower (ScaleSpeeds) by one factor from 0.75 to 1.3 and
+/// lets them all begin later by up to 0.5 s: what a seed changes of an episode besides random
+/// walks.
 void VaryObstacles(scenarios::Scenario& scenario, std::uint64_t seed);
 
 /// All rows, with a column for each factor and each metric.

@@ -6,6 +6,7 @@
 
 #include "sidestep/bench/resolve.h"
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/yaml_reader.h"
 #include "sidestep/planner/registry.h"
 #include "sidestep/sdf/prediction/registry.h"
 #include "sidestep/sdf/world_model.h"
@@ -27,6 +28,9 @@ void Override(scenarios::Scenario& scenario, const Overrides& overrides) {
   if (overrides.speed_m_s) {
     if (scenario.moving_obstacles.empty()) {
       throw InputError("--speed", "this scenario has no moving obstacle");
+    }
+    if (*overrides.speed_m_s > YamlReader::kLargestNumber) {
+      throw InputError("--speed", "must be at most 1e12");
     }
     for (scenarios::MovingObstacle& obstacle : scenario.moving_obstacles) {
       std::visit([&](auto& motion) { motion.speed_m_s = *overrides.speed_m_s; }, obstacle.motion);

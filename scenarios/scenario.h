@@ -138,6 +138,12 @@ struct Scenario {
 /// What to throw where the value of `key` (a path in the file, as in `lines`) is wrong.
 InputError WrongValue(const Scenario& scenario, const std::string& key, const std::string& why);
 
+/// Makes every moving obstacle `factor` times as fast, at each moment of its motion: speeds, their
+/// limits and accelerations alike, so that what was a scenario stays one.
+/// @throws InputError, as the reader would, if a number would be more than a scenario file may say;
+///   std::invalid_argument for a factor that is negative or not finite.
+void ScaleSpeeds(Scenario& scenario, double factor);
+
 /// Where an obstacle is at `t`. Before 0 it rests at its start.
 Pose PoseAt(const MovingObstacle& obstacle, EpisodeTime t);
 

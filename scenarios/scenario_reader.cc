@@ -143,7 +143,7 @@ Shape ReadShape(const YamlReader& parent) {
 Eigen::Vector3d ReadDirection(const YamlReader& body) {
   const Eigen::Vector3d direction = body.GetVector3("direction");
   const double length = direction.norm();
-  if (!(length > 1e-9)) body.Fail("direction", "must not be zero");
+  if (!(length > 1e-9)) body.Fail("direction", "must be longer than 1e-9");
   // One that was written as a unit vector is read as the same numbers.
   return std::abs(length - 1) < 1e-12 ? direction : direction / length;
 }
@@ -251,6 +251,7 @@ void ReadMovingObstacles(const YamlReader& top, Scenario& scenario, std::set<std
     obstacle.shape = ReadShape(map);
     obstacle.rpy_rad = map.Has("rpy_rad") ? map.GetVector3("rpy_rad") : Eigen::Vector3d(0, 0, 0);
     obstacle.motion = ReadMotion(map);
+    scenario.lines["moving_obstacles[" + index + "].motion"] = map.Line("motion");
     obstacle.appearance = map.Has("appearance") ? map.GetString("appearance") : "";
     scenario.lines["moving_obstacles[" + index + "].appearance"] = map.Line("appearance");
     map.CheckNoUnknownKeys();

@@ -125,5 +125,66 @@ TEST(MovingObstacle, KeepsItsOrientation) {
   ExpectNear(X_WO.Rotate({1, 0, 0}), {std::cos(1.2), std::sin(1.2), 0});
 }
 
+// A scenario of one moving ball, as a study makes it faster.
+Scenario FasterScenario(const Motion& motion, double factor) {
+  Scenario scenario;
+  scenario.file = "fast.yaml";
+  scenario.moving_obstacles = {Moving(motion)};
+  scenario.lines["moving_obstacles[0].motion"] = 7;
+  ScaleSpeeds(scenario, factor);
+  return scenario;
+}
+
+TEST(ScaleSpeeds, LetsEveryMotionGoItsWaySoManyTimesAsFast) {
+  const Motion motions[] = {
+      LinearMotion{{0.4, 2, 0.6}, {0, -1, 0}, 1.4, kNever},
+      WaypointMotion{{{0, 0, 0}, {1, 0, 0}, {1, 2, 0}}, 0.5, kNever},
+      AcceleratedMotion{{0, 0, 0}, {1, 0, 0}, 2, 3, 0.2, 2.5, kNever, 0},  // soon at its limit
+      AcceleratedMotion{{0, 0, 0}, {1, 0, 0}, 2, 0, 0, 2, kNever, 0},      // at its limit
+      AcceleratedMotion{{0, 0, 0}, {1, 0, 0}, 1.5, -2, 0.3, kNever, kNever, 0},
+      CircleMotion{{1, 2, 0.5}, 0.5, 0.3, true, 0.7, kNever, 0},
+      RandomWalkMotion{{1, 2, 0.5}, 0.3, 0.8, 0.4, 11, 0.7, kNever, 0},
+  };
+  for (const Motion& motion : motions) {
+    for (const double factor : {0.0, 0.75, 1.0, 1.3, 2.0}) {
+      const Scenario faster = FasterScenario(motion, factor);
+      const auto way = [](const Motion& any, double t_s) {  // by small steps, against closed forms
+        double way_m = 0;
+        for (int i = 0; i < 2000; ++i) {
+          way_m += (PositionAt(any, t_s * (i + 1) / 2000) - PositionAt(any, t_s * i / 2000)).norm();
+        }
+        return way_m;
+      };
+      EXPECT_NEAR(way(faster.moving_obstacles[0].motion, 1.1), factor * way(motion, 1.1), 2e-3)
+          << "motion " << motion.index() << ", factor " << factor;
+    }
+  }
+}
+
+TEST(ScaleSpeeds, NeverLiftsASpeedAboveItsLimit) {
+  const AcceleratedMotion motion{{0, 0, 0}, {1, 0, 0}, 2, 1, 0, 2.1, kNever, 0};
+  for (double factor = 0.7; factor < 1.4; factor += 0.013) {
+    const Scenario faster = FasterScenario(motion, factor);
+    const auto& scaled = std::get<AcceleratedMotion>(faster.moving_obstacles[0].motion);
+    EXPECT_EQ(scaled.speed_m_s, 2 * factor);
+    EXPECT_LE(scaled.speed_m_s, scaled.max_speed_m_s) << factor;
+  }
+}
+
+TEST(ScaleSpeeds, RefusesWhatNoScenarioFileMaySay) {
+  const LinearMotion motion{{0, 0, 0}, {1, 0, 0}, 9e11, kNever};
+  EXPECT_NO_THROW(FasterScenario(motion, 1.1));
+  try {
+    FasterScenario(motion, 1.2);
+    FAIL() << "was accepted";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "fast.yaml:7: moving_obstacles[0].motion: is too fast: 1.2 times as fast is "
+                 "beyond 1e12");
+  }
+  EXPECT_THROW(FasterScenario(motion, -1), std::invalid_argument);
+  EXPECT_THROW(FasterScenario(motion, kNever), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace sidestep::scenarios
