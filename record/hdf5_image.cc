@@ -176,8 +176,12 @@ std::vector<unsigned char> Hdf5ImageWriter::Finish() {
   return image;
 }
 
-Hdf5ImageReader::Hdf5ImageReader(std::span<const unsigned char> image, std::string name)
-    : name_(std::move(name)), image_bytes_(image.size()), file_([&]() -> hid_t {
+Hdf5ImageReader::Hdf5ImageReader(std::span<const unsigned char> image, std::string name,
+                                 std::size_t most_bytes)
+    : name_(std::move(name)),
+      image_bytes_(image.size()),
+      most_bytes_(static_cast<double>(most_bytes)),
+      file_([&]() -> hid_t {
         const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS));
         if (image.empty()) return H5I_INVALID_HID;
         // The library copies the image, and takes a pointer to mutable bytes nevertheless.
@@ -188,6 +192,14 @@ Hdf5ImageReader::Hdf5ImageReader(std::span<const unsigned char> image, std::stri
         return H5Fopen("in memory", H5F_ACC_RDONLY, access);
       }()) {
   if (!file_.valid()) throw InputError(name_, "does not hold readable HDF5");
+}
+
+void Hdf5ImageReader::Claim(const std::string& path, double num_bytes) const {
+  claimed_bytes_ += num_bytes;
+  if (claimed_bytes_ > most_bytes_) {
+    Fail(path, "with it the file would take more than " +
+                   std::to_string(static_cast<std::size_t>(most_bytes_) >> 20) + " MiB of memory");
+  }
 }
 
 void Hdf5ImageReader::Fail(const std::string& path, const std::string& why) const {
@@ -238,6 +250,20 @@ std::vector<hsize_t> Hdf5ImageReader::CheckShape(const std::string& path, hid_t 
   if (num_bytes > most_bytes) {
     Fail(path, "has " + ToText(shape) + ", more than the file can hold");
   }
+  // A chunk is unpacked as a whole, whatever is asked for.
+  const Hdf5Id creation(H5Dget_create_plist(dataset));
+  if (H5Pget_layout(creation) == H5D_CHUNKED) {
+    std::vector<hsize_t> chunk(shape.size());
+    H5Pget_chunk(creation, rank, chunk.data());
+    const bool is_within = std::equal(chunk.begin(), chunk.end(), shape.begin(), shape.end(),
+                                      [](hsize_t part, hsize_t all) { return part <= all; });
+    if (!is_within) Fail(path, "has chunks larger than itself");
+  }
+  const double value_bytes = static_cast<double>(H5Tget_size(type));
+  const double least_bytes = H5Tget_class(type) == H5T_STRING
+                                 ? value_bytes + static_cast<double>(sizeof(std::string))
+                                 : static_cast<double>(sizeof(double));
+  Claim(path, num_bytes / value_bytes * std::max(value_bytes, least_bytes));
   return shape;
 }
 

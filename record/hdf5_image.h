@@ -82,10 +82,18 @@ class Hdf5ImageWriter {
 };
 
 /// Reads an HDF5 file held in memory. Whatever is wrong becomes an InputError `NAME: PATH: WHY`.
+/// Zeros are packed a thousandfold, so a small file may promise more than there is memory: what is
+/// read is limited as a whole.
 class Hdf5ImageReader {
  public:
-  /// @param name stands for the file in messages. @throws InputError if this is not HDF5.
-  Hdf5ImageReader(std::span<const unsigned char> image, std::string name);
+  /// Far more than any trace of a minute holds.
+  static constexpr std::size_t kMostBytes = std::size_t{2} << 30;
+
+  /// @param name stands for the file in messages.
+  /// @param most_bytes for all arrays that are read, as they are in memory.
+  /// @throws InputError if this is not HDF5.
+  Hdf5ImageReader(std::span<const unsigned char> image, std::string name,
+                  std::size_t most_bytes = kMostBytes);
 
   std::int64_t GetIntegerAttribute(const std::string& name) const;
 
@@ -97,6 +105,10 @@ class Hdf5ImageReader {
   Hdf5Array<std::string> ReadStrings(const std::string& path,
                                      const std::vector<hsize_t>& shape) const;
 
+  /// Counts `num_bytes` that are to be made of what `path` holds; fails if all together are too
+  /// many.
+  void Claim(const std::string& path, double num_bytes) const;
+
   [[noreturn]] void Fail(const std::string& path, const std::string& why) const;
 
  private:
@@ -107,6 +119,8 @@ class Hdf5ImageReader {
   Hdf5Session session_;
   std::string name_;
   std::size_t image_bytes_;
+  double most_bytes_;
+  mutable double claimed_bytes_ = 0;
   Hdf5Id file_;
 };
 

@@ -390,6 +390,7 @@ void ReadProblem(const Hdf5ImageReader& file, Recording* recording) {
 
 void ReadControl(const Hdf5ImageReader& file, Recording* recording) {
   const Doubles t = ReadIncreasingTimes(file, "control/t");
+  file.Claim("control/t", static_cast<double>(t.values.size() * sizeof(ControlSample)));
   recording->control.resize(t.values.size());
   for (std::size_t i = 0; i < t.values.size(); ++i) {
     recording->control[i].t = EpisodeTime(t.values[i]);

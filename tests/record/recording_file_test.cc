@@ -411,6 +411,51 @@ INSTANTIATE_TEST_SUITE_P(
               "predictions/poses/quaternion: row 0 is not a finite pose"}),
     [](const auto& test) { return test.param.name; });
 
+TEST(Hdf5ImageReader, ReadsNoMoreThanItMayTakeOfMemory) {
+  const std::vector<double> zeros(1'000'000, 0);
+  const std::vector<unsigned char> image = [&] {  // one writer or reader at a time
+    Hdf5ImageWriter writer;
+    writer.Write("a", {{zeros.size()}, zeros});
+    writer.Write("b", {{zeros.size()}, zeros});
+    writer.Write("words", {{2}, std::vector<std::string>{"on", "off"}});
+    return writer.Finish();
+  }();
+  EXPECT_LT(image.size(), 100'000u);  // 16 MB
+  {
+    const Hdf5ImageReader enough(image, "t.h5", 17'000'000);
+    EXPECT_EQ(enough.ReadDoubles("a", {Hdf5ImageReader::kAny}).values, zeros);
+    EXPECT_EQ(enough.ReadDoubles("b", {Hdf5ImageReader::kAny}).values, zeros);
+    EXPECT_EQ(enough.ReadStrings("words", {2}).values.size(), 2u);
+  }
+  const Hdf5ImageReader too_little(image, "t.h5", 15'000'000);
+  too_little.ReadDoubles("a", {Hdf5ImageReader::kAny});
+  EXPECT_THAT([&] { too_little.ReadDoubles("b", {Hdf5ImageReader::kAny}); },
+              ::testing::ThrowsMessage<InputError>(
+                  "t.h5: b: with it the file would take more than 14 MiB of memory"));
+}
+
+// An array that could grow may have chunks larger than itself, and each is unpacked as a whole.
+TEST(Hdf5ImageReader, RefusesChunksLargerThanTheirArray) {
+  const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS));
+  H5Pset_fapl_core(access, 4096, false);
+  const Hdf5Id file(H5Fcreate("in memory", H5F_ACC_TRUNC, H5P_DEFAULT, access));
+  const hsize_t size = 10, chunk = 100'000, most = H5S_UNLIMITED;
+  const Hdf5Id creation(H5Pcreate(H5P_DATASET_CREATE));
+  H5Pset_chunk(creation, 1, &chunk);
+  H5Pset_deflate(creation, 9);
+  const Hdf5Id space(H5Screate_simple(1, &size, &most));
+  const Hdf5Id dataset(
+      H5Dcreate2(file, "a", H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT));
+  const std::vector<double> zeros(size, 0);
+  ASSERT_GE(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, zeros.data()), 0);
+  H5Fflush(file, H5F_SCOPE_GLOBAL);
+  std::vector<unsigned char> image(static_cast<std::size_t>(H5Fget_file_image(file, nullptr, 0)));
+  ASSERT_GT(H5Fget_file_image(file, image.data(), image.size()), 0);
+  const Hdf5ImageReader reader(image, "t.h5");
+  EXPECT_THAT([&] { reader.ReadDoubles("a", {Hdf5ImageReader::kAny}); },
+              ::testing::ThrowsMessage<InputError>("t.h5: a: has chunks larger than itself"));
+}
+
 TEST_F(RecordingFile, IsRefusedWithoutReadableHdf5Inside) {
   const std::vector<unsigned char> noise(5000, 0x5a);
   WriteSealedFile(Path("noise.h5"), kFormat, noise);
