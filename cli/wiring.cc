@@ -10,6 +10,8 @@
 #include "sidestep/planner/registry.h"
 #include "sidestep/sdf/prediction/registry.h"
 #include "sidestep/sdf/world_model.h"
+#include "sidestep/sim/foreign_model.h"
+#include "sidestep/sim/robot_agreement.h"
 #include "sidestep/sim/sensors.h"
 #include "sidestep/sim/simulation.h"
 
@@ -99,6 +101,8 @@ Problem AddRobot(scenarios::Scenario scenario, const DataPaths& paths) {
   CheckWord(scenario, "planner.name", scenario.planner, planner::PlannerNames());
   CheckWord(scenario, "robot.model", scenario.robot, ModelNames(paths.models, "robot.yaml"));
   robot::RobotModel robot = robot::RobotModel::Load(paths.models, scenario.robot, scenario.X_WB);
+  const std::string mjcf = paths.models + "/" + scenario.robot + "/" + scenario.robot + ".xml";
+  sim::CheckAgreement(robot, *sim::LoadModelFile(mjcf), mjcf);
   bench::ResolveTask(scenario, robot);
   return {std::move(scenario), std::move(robot)};
 }

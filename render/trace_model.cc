@@ -6,6 +6,7 @@
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/trajectory.h"
 #include "sidestep/render/timeline.h"
+#include "sidestep/sim/foreign_model.h"
 
 namespace sidestep::render {
 namespace {
@@ -27,7 +28,7 @@ TraceModel::TraceModel(const record::Recording& recording, const std::string& na
   if (recording.control.empty()) throw InputError(name, "holds no motion, so nothing to draw");
   if (recording.joints.empty()) throw InputError(name, "names no joints, so nothing to draw");
   if (recording.model_xml.empty()) throw InputError(name, "holds no model, so nothing to draw");
-  model_ = sim::LoadMujocoModel(recording.model_xml, name + ": model_xml");
+  model_ = sim::LoadForeignModel(recording.model_xml, name + ": model_xml");
   data_ = sim::MakeMujocoData(*model_);
   int last_joint = 0;
   for (const std::string& joint : recording.joints) {

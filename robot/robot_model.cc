@@ -163,6 +163,7 @@ RobotModel RobotModel::FromFile(const std::string& path, const Pose& X_WB) {
   const YamlReader file = YamlReader::FromFile(path);
   RobotModel model;
   model.X_WB_ = X_WB;
+  model.file_ = path;
   model.name_ = file.GetString("name");
 
   for (const YamlReader& joint : file.GetMaps("joints")) {
@@ -176,6 +177,11 @@ RobotModel RobotModel::FromFile(const std::string& path, const Pose& X_WB) {
     model.cos_alpha_.push_back(std::cos(model.dh_.back().alpha_rad));
     model.sin_alpha_.push_back(std::sin(model.dh_.back().alpha_rad));
     model.limits_.push_back(ReadLimits(joint.GetMap("limits")));
+    const std::string key = "joints[" + std::to_string(model.joint_names_.size() - 1) + "]";
+    for (const char* const part : {"name", "dh"}) model.lines_[key + "." + part] = joint.Line(part);
+    for (const char* const limit : {"q_min_rad", "q_max_rad", "torque_max_n_m"}) {
+      model.lines_[key + ".limits." + limit] = joint.GetMap("limits").Line(limit);
+    }
     joint.CheckNoUnknownKeys();
   }
   const int n = model.num_joints();
@@ -199,6 +205,7 @@ RobotModel RobotModel::FromFile(const std::string& path, const Pose& X_WB) {
   const YamlReader mount = file.GetMap("mount");
   model.mount_spheres_ = ReadSphereIndices(mount, model.num_spheres());
   model.mount_links_ = mount.GetStrings("links");
+  model.lines_["mount.links"] = mount.Line("links");
   mount.CheckNoUnknownKeys();
 
   if (file.Has("self_collision")) {
@@ -212,6 +219,11 @@ RobotModel RobotModel::FromFile(const std::string& path, const Pose& X_WB) {
 
   file.CheckNoUnknownKeys();
   return model;
+}
+
+int RobotModel::LineOf(const std::string& key) const {
+  const auto found = lines_.find(key);
+  return found == lines_.end() ? 1 : found->second;
 }
 
 RobotModel::Chain RobotModel::ComputeChain(const Eigen::VectorXd& q) const {

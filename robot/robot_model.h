@@ -60,6 +60,10 @@ class RobotModel {
   static constexpr int kMaxJoints = 16;
 
   const std::string& name() const { return name_; }
+  const std::string& file() const { return file_; }  ///< where it was read
+  /// The line there of what only other modules can judge, by its path (`joints[2].dh`,
+  /// `joints[2].limits.q_min_rad`, `mount.links`, ...); 1 for any other.
+  int LineOf(const std::string& key) const;
   const Pose& X_WB() const { return X_WB_; }
   int num_joints() const { return static_cast<int>(limits_.size()); }
   int num_spheres() const { return static_cast<int>(spheres_.size()); }
@@ -98,7 +102,8 @@ class RobotModel {
   struct Chain;  // where every joint axis and link frame is for one q
   Chain ComputeChain(const Eigen::VectorXd& q) const;
 
-  std::string name_;
+  std::string name_, file_;
+  std::map<std::string, int> lines_;
   Pose X_WB_;
   std::vector<std::string> joint_names_;
   std::vector<DhRow> dh_;

@@ -1,8 +1,8 @@
 #include "sidestep/sim/mujoco_model.h"
 
-#include <algorithm>
 #include <array>
 #include <cstring>
+#include <regex>
 
 #include "sidestep/core/input_error.h"
 
@@ -15,6 +15,25 @@ namespace {
 void ThrowError(const char* message) { throw SimulationError(std::string("MuJoCo: ") + message); }
 
 void IgnoreWarning(const char*) {}
+
+// What MuJoCo says of a text, as an InputError at its line. The message is one of
+//   XML Error: WHY / Element 'TAG', line 4
+//   Error: WHY / Object name = NAME, id = 0, line = 4, column = -1
+//   XML parse error 14: / Error=WHY ErrorID=14 (0xe) Line number=4: ...
+// where / is a line break or two; anything else is passed on as it is.
+InputError ErrorOf(const std::string& file, const std::string& message) {
+  static const std::regex kElement("(?:XML )?Error: ([^\\n]*)\\n+Element '([^']*)', line (\\d+)");
+  static const std::regex kObject(
+      "Error: ([^\\n]*)\\n+Object name = (.*), id = \\d+, line = (\\d+)");
+  static const std::regex kSyntax("XML parse error [^\\n]*\\n+Error=(\\w+)().*Line number=(\\d+)");
+  for (const std::regex* const form : {&kElement, &kObject, &kSyntax}) {
+    std::smatch parts;
+    if (!std::regex_search(message, parts, *form)) continue;
+    const std::string line = parts[3].str().substr(0, 9);
+    return InputError(file, std::stoi(line), parts[2], parts[1]);
+  }
+  return InputError(file, message);
+}
 
 void InstallHandlers() {
   static const bool kInstalled = [] {
@@ -38,11 +57,7 @@ MujocoModelPtr LoadMujocoModel(const std::string& xml, const std::string& name) 
   MujocoModelPtr model(
       mj_loadXML(kFile, vfs.get(), message.data(), static_cast<int>(message.size())));
   mj_deleteVFS(vfs.get());
-  if (!model) {
-    std::string line(message.data());
-    std::replace(line.begin(), line.end(), '\n', ' ');
-    throw InputError(name, line);
-  }
+  if (!model) throw ErrorOf(name, message.data());
   return model;
 }
 

@@ -33,7 +33,8 @@ std::string MujocoVersion();
 /// MUJOCO_LOG.TXT in the working directory any more; MujocoWarning reads them from the state they
 /// belong to.
 /// @param name stands for the file in messages.
-/// @throws InputError with MuJoCo's own message if the text is not a model.
+/// @throws InputError with MuJoCo's own words if the text is not a model, at the line of the text
+///   and with the element or the object's name where MuJoCo tells them.
 MujocoModelPtr LoadMujocoModel(const std::string& xml, const std::string& name);
 
 /// A state of `model` at its reference pose, nothing computed yet.

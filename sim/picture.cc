@@ -1,6 +1,7 @@
 #include "sidestep/sim/picture.h"
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/sim/foreign_model.h"
 #include "sidestep/sim/mujoco_model.h"
 #include "sidestep/sim/mujoco_pose.h"
 
@@ -26,9 +27,9 @@ std::string TypeName(int type, const std::string& name) {
 
 }  // namespace
 
-std::vector<PictureGeom> PictureOf(const std::string& xml, const std::string& name) {
+std::vector<PictureGeom> PictureOf(const std::string& path) {
   constexpr int kLastGroupDrawn = 2;
-  const MujocoModelPtr model = LoadMujocoModel(xml, name);
+  const MujocoModelPtr model = LoadModelFile(path);
   const MujocoDataPtr data = MakeMujocoData(*model);
   mj_kinematics(model.get(), data.get());
   std::vector<PictureGeom> picture;
@@ -36,7 +37,7 @@ std::vector<PictureGeom> PictureOf(const std::string& xml, const std::string& na
     if (model->geom_group[i] > kLastGroupDrawn || model->geom_type[i] == mjGEOM_PLANE) continue;
     const int material = model->geom_matid[i];
     const float* rgba = material >= 0 ? model->mat_rgba + 4 * material : model->geom_rgba + 4 * i;
-    picture.push_back({TypeName(model->geom_type[i], name),
+    picture.push_back({TypeName(model->geom_type[i], path),
                        Eigen::Map<const Eigen::Vector3d>(model->geom_size + 3 * i),
                        GeomPose(*data, i), Eigen::Map<const Eigen::Vector4f>(rgba)});
   }

@@ -18,8 +18,8 @@ struct PictureGeom {
 
 /// What MuJoCo draws by default of a model (geoms of groups 0 to 2) at its reference pose, planes
 /// left out.
-/// @param xml MJCF that refers to no file; `name` stands for it in messages.
+/// @param path of an MJCF file that refers to no other.
 /// @throws InputError if it is not a model, or draws a mesh or a height field.
-std::vector<PictureGeom> PictureOf(const std::string& xml, const std::string& name);
+std::vector<PictureGeom> PictureOf(const std::string& path);
 
 }  // namespace sidestep::sim

@@ -1,7 +1,10 @@
 #include "sidestep/sim/simulation.h"
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/sim/foreign_model.h"
+#include "sidestep/sim/mujoco_model.h"
 #include "sidestep/sim/no_robot.h"
+#include "sidestep/sim/robot_agreement.h"
 #include "sidestep/sim/sensors.h"
 #include "sidestep/sim/simulated_robot.h"
 #include "sidestep/sim/world_xml.h"
@@ -26,6 +29,22 @@ std::vector<std::string> NamesOf(const std::vector<scenarios::MovingObstacle>& o
   return names;
 }
 
+// Compiles the world. What is wrong with the robot's own file is told with its lines: those of the
+// whole world are of a text that nobody wrote.
+MujocoModelPtr Compile(const std::string& xml, const scenarios::Scenario& scenario,
+                       const robot::RobotModel& robot, const std::string& models_dir) {
+  const std::string mjcf = models_dir + "/" + scenario.robot + "/" + scenario.robot + ".xml";
+  MujocoModelPtr model;
+  try {
+    model = LoadMujocoModel(xml, scenario.file + ": its world");
+  } catch (const InputError&) {
+    CheckAgreement(robot, *LoadModelFile(mjcf), mjcf);
+    throw;
+  }
+  CheckAgreement(robot, *model, mjcf);
+  return model;
+}
+
 }  // namespace
 
 Simulation::Simulation(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
@@ -33,7 +52,8 @@ Simulation::Simulation(const scenarios::Scenario& scenario, const robot::RobotMo
     : model_xml_(BuildWorldXml(scenario, robot.mount_links(), models_dir)),
       joints_(robot.joint_names()),
       obstacles_(NamesOf(scenario.moving_obstacles)),
-      world_(scenario, model_xml_, joints_, StartOf(scenario, robot)),
+      world_(scenario, Compile(model_xml_, scenario, robot, models_dir), joints_,
+             StartOf(scenario, robot)),
       truth_(world_),
       robot_(std::make_unique<SimulatedRobot>(
           robot, &world_, [this] { truth_.Observe(); }, scenario.velocity_limits ? 1 : kUnlimited)),
@@ -42,7 +62,8 @@ Simulation::Simulation(const scenarios::Scenario& scenario, const robot::RobotMo
 Simulation::Simulation(const scenarios::Scenario& scenario, const std::string& models_dir)
     : model_xml_(BuildWorldXml(scenario, {}, models_dir)),
       obstacles_(NamesOf(scenario.moving_obstacles)),
-      world_(scenario, model_xml_, {}, Eigen::VectorXd()),
+      world_(scenario, LoadMujocoModel(model_xml_, scenario.file + ": its world"), {},
+             Eigen::VectorXd()),
       truth_(world_),
       robot_(std::make_unique<NoRobot>(&world_)),
       sensor_(MakeSensor(scenario, world_)) {}

@@ -20,7 +20,8 @@ namespace sidestep::sim {
 class Simulation {
  public:
   /// @param robot the scenario's, with its base at scenario.X_WB.
-  /// @throws InputError for model files that do not fit, a start that the robot does not have, or
+  /// @throws InputError for a robot whose robot.yaml and MJCF do not agree (sim/robot_agreement.h),
+  ///   model files that do not fit, a start that the robot does not have, or
   ///   an unknown sensor.
   Simulation(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
              const std::string& models_dir);

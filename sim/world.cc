@@ -2,15 +2,16 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "sidestep/core/input_error.h"
 #include "sidestep/sim/contact_room.h"
 
 namespace sidestep::sim {
 
-World::World(const scenarios::Scenario& scenario, const std::string& xml,
+World::World(const scenarios::Scenario& scenario, MujocoModelPtr model,
              const std::vector<std::string>& joints, const Eigen::VectorXd& q_start)
-    : model_(LoadMujocoModel(xml, scenario.file)),
+    : model_(std::move(model)),
       data_(MakeMujocoData(*model_)),
       obstacles_(scenario.moving_obstacles) {
   if (q_start.size() != static_cast<Eigen::Index>(joints.size()) || !q_start.allFinite()) {

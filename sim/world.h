@@ -19,12 +19,12 @@ class World {
  public:
   static constexpr int kTicksPerSecond = 1000;
 
-  /// @param xml what BuildWorldXml made of `scenario`.
+  /// @param model what BuildWorldXml made of `scenario`, compiled.
   /// @param joints the arm's joints in the model; each must have one motor of gear 1.
   /// @param q_start where they begin, at rest.
-  /// @throws InputError if the text is not a model, or has not these joints and motors;
-  ///   std::invalid_argument for a q_start of the wrong shape or not finite.
-  World(const scenarios::Scenario& scenario, const std::string& xml,
+  /// @throws InputError if the model has not these joints and motors; std::invalid_argument for a
+  /// q_start of the wrong shape or not finite.
+  World(const scenarios::Scenario& scenario, MujocoModelPtr model,
         const std::vector<std::string>& joints, const Eigen::VectorXd& q_start);
   World(const World&) = delete;
   World& operator=(const World&) = delete;

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/sim/foreign_model.h"
 #include "sidestep/sim/mujoco_model.h"
 #include "sidestep/sim/picture.h"
 
@@ -69,30 +70,6 @@ void SetShape(XMLElement* geom, const Shape& shape) {
 
 // The robot's file -----------------------------------------------------------------------------
 
-void CheckRefersToNoFile(const XMLElement& element, const std::string& path) {
-  const bool includes = std::string(element.Name()) == "include";
-  if (includes || element.Attribute("file") != nullptr) {
-    throw InputError(path, element.GetLineNum(), includes ? "include" : "file",
-                     "a model must not refer to other files; build it from primitives");
-  }
-  for (const XMLElement* child = element.FirstChildElement(); child != nullptr;
-       child = child->NextSiblingElement()) {
-    CheckRefersToNoFile(*child, path);
-  }
-}
-
-const XMLElement& LoadModelFile(const std::string& path, XMLDocument* document) {
-  if (document->LoadFile(path.c_str()) != tinyxml2::XML_SUCCESS) {
-    throw InputError(path, document->ErrorLineNum(), "", document->ErrorName());
-  }
-  const XMLElement* root = document->RootElement();
-  if (root == nullptr || std::string(root->Name()) != "mujoco") {
-    throw InputError(path, 1, "", "must be an MJCF file, whose root is <mujoco>");
-  }
-  CheckRefersToNoFile(*root, path);
-  return *root;
-}
-
 void CopyChildren(const XMLElement& from, XMLElement* to) {
   for (const tinyxml2::XMLNode* child = from.FirstChild(); child != nullptr;
        child = child->NextSibling()) {
@@ -110,7 +87,7 @@ bool TakesClass(const std::string& section, const std::string& tag) {
 
 void MergeRobot(const scenarios::Scenario& scenario, const std::string& path, XMLElement* world) {
   XMLDocument document;
-  const XMLElement& robot = LoadModelFile(path, &document);
+  const XMLElement& robot = ParseModel(ReadModelFile(path), path, &document);
   const std::string main_class = scenario.robot + ".xml";
   const auto section = [&](const char* name) {
     XMLElement* found = world->FirstChildElement(name);
@@ -299,13 +276,9 @@ Pose AppearancePose(const scenarios::MovingObstacle& obstacle) {
 
 void AddPicture(const scenarios::MovingObstacle& obstacle, const std::string& path,
                 XMLElement* body) {
-  XMLDocument document;
-  LoadModelFile(path, &document);
-  tinyxml2::XMLPrinter printer;
-  document.Print(&printer);
   XMLElement* frame = Append(body, "body");
   SetPose(frame, AppearancePose(obstacle));
-  for (const PictureGeom& picture : PictureOf(printer.CStr(), path)) {
+  for (const PictureGeom& picture : PictureOf(path)) {
     XMLElement* geom = Append(frame, "geom");
     Set(geom, "type", picture.type);
     Set(geom, "size", ToText(picture.size));

@@ -1,7 +1,9 @@
 // Any file is refused with an InputError, or is a recording. The checksum of a trace would stop
 // nearly everything at once, and damage inside HDF5's own structures is the library's to find. So
 // what is fuzzed is what a faulty writer could leave: a good trace, of which some datasets are
-// missing, replaced by others of any type, shape and values, or changed in one value.
+// missing, replaced by others of any type, shape and values, or changed in one value. What is a
+// recording is drawn from its model, so that is compiled, too, or refused: of a world like ours,
+// parts are replaced by other parts of such worlds or by anything.
 #include <fuzzer/FuzzedDataProvider.h>
 #include <unistd.h>
 
@@ -15,6 +17,7 @@
 #include "sidestep/record/hdf5_image.h"
 #include "sidestep/record/recording_file.h"
 #include "sidestep/record/sealed_file.h"
+#include "sidestep/sim/foreign_model.h"
 #include "tests/fuzz/memory_file.h"
 #include "tests/support/full_recording.h"
 
@@ -23,11 +26,74 @@ namespace {
 
 const record::SealedFormat kFormat = {"sidestep trace", 1};
 
+constexpr const char* kGoodModel = R"(<mujoco model="small"><option timestep="0.001"/>
+<size nconmax="200" njmax="800"/><visual><quality shadowsize="2048"/></visual>
+<default><geom rgba="1 0 0 1" density="800"/></default>
+<asset><texture name="sky" type="skybox" builtin="gradient" width="16" height="16"/>
+<material name="m" rgba="0 1 0 1"/></asset>
+<worldbody><geom name="floor" type="plane" size="0 0 1" material="m"/><light pos="0 0 3"/>
+<camera name="top" pos="0 0 3" xyaxes="1 0 0 0 1 0"/>
+<body name="link"><joint name="turn" axis="0 0 1" range="-2 2" limited="true"/>
+<geom type="capsule" fromto="0 0 0 0 0 1" size="0.1"/><site name="dh1" pos="0 0 1"/></body>
+<body name="box" mocap="true" pos="0 0 2"><geom type="box" size="1 1 1"/></body></worldbody>
+<contact><exclude body1="link" body2="box"/></contact>
+<actuator><motor name="push" joint="turn" ctrlrange="-1 1" ctrllimited="true"/></actuator>
+</mujoco>)";
+
+// What may stand in a model, in place of some of it.
+constexpr const char* kModelParts[] = {
+    "<body>",
+    "</body>",
+    "<joint/>",
+    "<freejoint/>",
+    "<geom size='1'/>",
+    "<site/>",
+    "\"ball\"",
+    "\"free\"",
+    "\"mesh\"",
+    "\"ellipsoid\"",
+    "<mesh name='t' vertex='0 0 0 1 0 0 0 1 0 0 0 1'/>",
+    "<size njmax='7000'/>",
+    "<size nconmax='1000000'/>",
+    "<size nstack='1'/>",
+    "<composite/>",
+    "<inertial pos='0 0 0' mass='1e-300' diaginertia='1 1 1'/>",
+    "<tendon><spatial><site site='dh1'/>",
+    "<sensor><touch site='dh1'/></sensor>",
+    "<equality><weld body1='link'/></equality>",
+    "<default class='a'>",
+    "</default>",
+    " mass='1e300'",
+    " file='/etc/passwd'",
+    " quat='0 0 0 0'",
+    " euler='1 2 3'",
+    " nan",
+    " 1e308",
+    " -1",
+    "\"\"",
+    "<compiler angle='degree' coordinate='global'/>",
+    "<texture builtin='flat' type='cube' width='4096' height='4096'/>",
+    "<user dim='-5'/>"};
+
+std::string AnyModel(FuzzedDataProvider& data) {
+  std::string xml = kGoodModel;
+  for (int edits = data.ConsumeIntegralInRange(0, 4); edits > 0; --edits) {
+    const auto at = data.ConsumeIntegralInRange<std::size_t>(0, xml.size());
+    const auto length = data.ConsumeIntegralInRange<std::size_t>(0, 40);
+    xml.replace(at, length,
+                data.ConsumeBool() ? data.PickValueInArray(kModelParts)
+                                   : data.ConsumeRandomLengthString(60));
+  }
+  return xml.substr(0, xml.find('\0'));
+}
+
 std::vector<unsigned char> GoodPayload() {
   char folder[] = "/tmp/trace_fuzzer_XXXXXX";
   if (mkdtemp(folder) == nullptr) std::abort();
   const std::string path = std::string(folder) + "/good.h5";
-  record::WriteRecording(FullRecording(3), path);
+  record::Recording recording = FullRecording(3);
+  recording.model_xml = kGoodModel;
+  record::WriteRecording(recording, path);
   std::vector<unsigned char> payload = record::ReadSealedFile(path, kFormat);
   unlink(path.c_str());
   rmdir(folder);
@@ -128,6 +194,16 @@ void ChangeOneValue(const record::Hdf5Id& file, const std::string& path, FuzzedD
   H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
 }
 
+void ReplaceModel(const record::Hdf5Id& file, FuzzedDataProvider& data) {
+  const std::string xml = AnyModel(data);
+  H5Ldelete(file, "model_xml", H5P_DEFAULT);
+  const record::Hdf5Id type(H5Tcopy(H5T_C_S1)), space(H5Screate(H5S_SCALAR));
+  H5Tset_size(type, std::max<std::size_t>(1, xml.size()));
+  const record::Hdf5Id dataset(
+      H5Dcreate2(file, "model_xml", type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, xml.c_str());
+}
+
 std::string FaultyTrace(FuzzedDataProvider& data) {
   static const std::vector<unsigned char> good = GoodPayload();
   static const std::vector<std::string> paths = DatasetsOf(OpenImage(good));
@@ -136,7 +212,10 @@ std::string FaultyTrace(FuzzedDataProvider& data) {
   const int num_faults = data.ConsumeIntegralInRange(0, 3);
   for (int i = 0; i < num_faults; ++i) {
     const std::string& path = paths[data.ConsumeIntegralInRange<std::size_t>(0, paths.size() - 1)];
-    switch (data.ConsumeIntegralInRange(0, 2)) {
+    switch (data.ConsumeIntegralInRange(0, 3)) {
+      case 3:
+        ReplaceModel(file, data);
+        break;
       case 0:
         H5Ldelete(file, path.c_str(), H5P_DEFAULT);
         break;
@@ -154,7 +233,9 @@ std::string FaultyTrace(FuzzedDataProvider& data) {
 void Read(const std::string& bytes) {
   const MemoryFile file(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
   try {
-    record::ReadRecording(file.path());
+    const record::Recording recording = record::ReadRecording(file.path());
+    const sim::MujocoModelPtr model = sim::LoadForeignModel(recording.model_xml, "trace");
+    mj_kinematics(model.get(), sim::MakeMujocoData(*model).get());
   } catch (const InputError&) {
   }
 }

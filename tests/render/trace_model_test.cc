@@ -104,9 +104,13 @@ TEST(TraceModel, RefusesRecordingsItCannotDraw) {
       {[](record::Recording& r) { r.control[5].q(0) = std::numeric_limits<double>::quiet_NaN(); },
        "t.h5: holds a joint position that is not finite"},
       {[](record::Recording& r) {
-         r.model_xml = "<mujoco><worldbody><geom/></worldbody></mujoco>";
+         r.model_xml = "<mujoco>\n<worldbody>\n<geom/></worldbody></mujoco>";
        },
-       "t.h5: model_xml: "},
+       "t.h5: model_xml:3: sizes must be positive"},
+      {[](record::Recording& r) {
+         r.model_xml = "<mujoco>\n<asset><mesh file='/etc/passwd'/></asset></mujoco>";
+       },
+       "t.h5: model_xml:2: file: a model must not refer to other files"},
       {[](record::Recording& r) { r.model_xml.clear(); }, "t.h5: holds no model"},
   };
   for (const auto& c : cases) {

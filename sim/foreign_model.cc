@@ -1,0 +1,171 @@
+#include "sidestep/sim/foreign_model.h"
+
+#include <tinyxml2.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string_view>
+
+#include "sidestep/core/input_error.h"
+
+namespace sidestep::sim {
+namespace {
+
+using tinyxml2::XMLElement;
+
+// Generous for a robot among some hundred things: a world of ours has some 20 kB and 300 elements.
+constexpr std::size_t kMostBytes = 2 << 20;
+constexpr int kMostElements = 20000, kMostJoints = 256;
+constexpr double kMostTextureBytes = 256 << 20;
+
+// What an attribute may be at most. MuJoCo's memory grows with their squares and products.
+struct Bound {
+  std::string_view tag, attribute;  // an empty attribute: all others of the element
+  double most;
+};
+constexpr Bound kBounds[] = {
+    {"size", "njmax", 8000},  // so many doubles squared are allocated
+    {"size", "nconmax", 8000},
+    {"size", "", 100},
+    {"texture", "width", 4096},  // all textures together: kMostTextureBytes
+    {"texture", "height", 4096},
+    {"global", "offwidth", 8192},  // pixels of the buffer that is drawn to
+    {"global", "offheight", 8192},
+    {"quality", "", 16384},  // of shadows, spheres, ...
+    {"user", "dim", 1000},   // a sensor's values
+};
+
+// Made to any size from a few words, or of no use here.
+const std::set<std::string_view> kRefused = {"composite", "hfield", "skin", "flexcomp", "plugin"};
+
+// The sections that BuildWorldXml writes or takes over from the robot.
+const std::set<std::string_view> kSections = {
+    "compiler",  "option",  "size",     "statistic", "visual",   "asset", "default",
+    "worldbody", "contact", "equality", "tendon",    "actuator", "sensor"};
+
+bool StartsWith(std::string_view text, std::string_view start) {
+  return text.substr(0, start.size()) == start;
+}
+
+class Walk {
+ public:
+  explicit Walk(const std::string& file) : file_(file) {}
+
+  void Check(const XMLElement& element) {
+    const std::string_view tag = element.Name();
+    if (++num_elements_ > kMostElements) {
+      Fail(element, tag, "is one element too many, of at most " + std::to_string(kMostElements));
+    }
+    if ((tag == "joint" || tag == "freejoint") && ++num_joints_ > kMostJoints) {
+      Fail(element, tag, "is one joint too many, of at most " + std::to_string(kMostJoints));
+    }
+    if (tag == "include") Fail(element, tag, kNoFiles);
+    if (kRefused.count(tag) > 0) Fail(element, tag, "is no part of a robot of primitives");
+    for (const tinyxml2::XMLAttribute* attribute = element.FirstAttribute(); attribute != nullptr;
+         attribute = attribute->Next()) {
+      // file, and fileright, fileup, ... of a sky
+      if (StartsWith(attribute->Name(), "file")) Fail(element, attribute->Name(), kNoFiles);
+      CheckBound(element, *attribute);
+    }
+    if (tag == "texture") CountTexture(element);
+    for (const XMLElement* child = element.FirstChildElement(); child != nullptr;
+         child = child->NextSiblingElement()) {
+      Check(*child);
+    }
+  }
+
+  [[noreturn]] void Fail(const XMLElement& element, std::string_view key,
+                         const std::string& why) const {
+    throw InputError(file_, element.GetLineNum(), std::string(key), why);
+  }
+
+ private:
+  static constexpr const char* kNoFiles =
+      "a model must not refer to other files; build it from primitives";
+
+  // What is no number is left to MuJoCo, which refuses it.
+  void CheckBound(const XMLElement& element, const tinyxml2::XMLAttribute& attribute) const {
+    for (const Bound& bound : kBounds) {
+      if (bound.tag != element.Name()) continue;
+      if (!bound.attribute.empty() && bound.attribute != attribute.Name()) continue;
+      if (std::strtod(attribute.Value(), nullptr) <= bound.most) return;
+      Fail(element, attribute.Name(),
+           "must be at most " + std::to_string(static_cast<int>(bound.most)) + ", is " +
+               attribute.Value());
+    }
+  }
+
+  // Six faces of three bytes a pixel, as a sky has them, made anew for each element.
+  void CountTexture(const XMLElement& texture) {
+    const double width = std::max(1.0, texture.DoubleAttribute("width", 0));
+    const double height = std::max(width, texture.DoubleAttribute("height", 0));
+    texture_bytes_ += 18 * width * height;
+    if (texture_bytes_ > kMostTextureBytes) {
+      Fail(texture, "texture", "with it textures would take more than 256 MiB of memory");
+    }
+  }
+
+  const std::string& file_;
+  int num_elements_ = 0, num_joints_ = 0;
+  double texture_bytes_ = 0;
+};
+
+}  // namespace
+
+std::string ReadModelFile(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (!file || !(text << file.rdbuf())) {
+    throw InputError(path, std::string("cannot be read: ") + std::strerror(errno));
+  }
+  return text.str();
+}
+
+const XMLElement& ParseModel(const std::string& xml, const std::string& name,
+                             tinyxml2::XMLDocument* document) {
+  if (document->Parse(xml.data(), xml.size()) != tinyxml2::XML_SUCCESS) {
+    throw InputError(name, document->ErrorLineNum(), "", document->ErrorName());
+  }
+  const XMLElement* const root = document->RootElement();
+  if (root == nullptr || std::string_view(root->Name()) != "mujoco") {
+    throw InputError(name, root == nullptr ? 1 : root->GetLineNum(), "",
+                     "must be an MJCF file, whose root is <mujoco>");
+  }
+  Walk(name).Check(*root);
+  return *root;
+}
+
+MujocoModelPtr LoadModelFile(const std::string& path) {
+  const std::string xml = ReadModelFile(path);
+  tinyxml2::XMLDocument document;
+  ParseModel(xml, path, &document);
+  return LoadMujocoModel(xml, path);
+}
+
+MujocoModelPtr LoadForeignModel(const std::string& xml, const std::string& name) {
+  if (xml.size() > kMostBytes) {
+    throw InputError(name, "is " + std::to_string(xml.size()) + " bytes long, must be at most " +
+                               std::to_string(kMostBytes));
+  }
+  tinyxml2::XMLDocument document;
+  const XMLElement& root = ParseModel(xml, name, &document);
+  for (const XMLElement* section = root.FirstChildElement(); section != nullptr;
+       section = section->NextSiblingElement()) {
+    if (kSections.count(section->Name()) == 0) {
+      throw InputError(name, section->GetLineNum(), section->Name(),
+                       "is no section of a world of ours");
+    }
+  }
+  try {
+    return LoadMujocoModel(xml, name);
+  } catch (const SimulationError& error) {
+    throw InputError(name, error.what());
+  }
+}
+
+}  // namespace sidestep::sim

@@ -1,0 +1,310 @@
+#include "sidestep/sim/robot_agreement.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "sidestep/core/input_error.h"
+#include "sidestep/core/random.h"
+#include "sidestep/scenarios/yaml_text.h"
+#include "sidestep/sim/mjcf_lines.h"
+#include "sidestep/sim/mujoco_model.h"
+#include "sidestep/sim/world_xml.h"
+
+namespace sidestep::sim {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kRounding = 1e-4;  // what four written digits leave, with room
+constexpr int kNumConfigurations = 16;
+constexpr double kUnlimited_rad = 3;  // how far a joint without limits is turned here
+
+bool AreSame(double a, double b) {
+  if (std::isinf(a) || std::isinf(b)) return a == b;
+  return std::abs(a - b) <= kRounding * std::max(1.0, std::abs(a));
+}
+
+double Rounded(double value) { return std::round(value * 1e6) / 1e6 + 0.0; }  // no -0
+
+std::string Millimetres(double length_m) {
+  return scenarios::Number(std::round(length_m * 1e5) / 1e2);
+}
+
+std::string KindOf(int joint_type) {
+  switch (joint_type) {
+    case mjJNT_FREE:
+      return "free";
+    case mjJNT_BALL:
+      return "a ball";
+    case mjJNT_SLIDE:
+      return "a slide";
+    default:
+      return "a hinge";
+  }
+}
+
+class Comparison {
+ public:
+  Comparison(const robot::RobotModel& robot, const mjModel& model, const std::string& mjcf_path)
+      : robot_(robot), model_(model), mjcf_(mjcf_path) {}
+
+  void CheckJoints() {
+    for (int i = 0; i < robot_.num_joints(); ++i) {
+      const std::string& name = robot_.joint_names()[static_cast<std::size_t>(i)];
+      const int joint = mj_name2id(&model_, mjOBJ_JOINT, name.c_str());
+      if (joint < 0) {
+        FailInYaml(KeyOf(i) + ".name",
+                   "'" + name + "' is no joint of " + mjcf_.path() + " (there: " + Joints() + ")");
+      }
+      joints_.push_back(joint);
+      if (model_.jnt_type[joint] != mjJNT_HINGE) {
+        FailInMjcf(
+            "joint", name,
+            "is " + KindOf(model_.jnt_type[joint]) + ", must be a hinge: " + InYaml(i) + " turns");
+      }
+      if (i > 0 && joints_[static_cast<std::size_t>(i) - 1] > joint) {
+        FailInYaml(KeyOf(i) + ".name", "'" + name + "' comes before '" +
+                                           robot_.joint_names()[static_cast<std::size_t>(i) - 1] +
+                                           "' in " + At("joint", name));
+      }
+    }
+    for (int i = 0; i < robot_.num_joints(); ++i) {
+      CheckRange(i, joints_[static_cast<std::size_t>(i)]);
+    }
+    for (int joint = 0; joint < model_.njnt; ++joint) {
+      if (std::count(joints_.begin(), joints_.end(), joint) > 0) continue;
+      const std::string name = NameOf(mjOBJ_JOINT, joint);
+      FailInMjcf("joint", name,
+                 "is not in " + robot_.file() + ": nothing would hold it; name it there or fix it");
+    }
+  }
+
+  void CheckMotors() {
+    for (int motor = 0; motor < model_.nu; ++motor) {
+      const bool drives =
+          model_.actuator_trntype[motor] == mjTRN_JOINT &&
+          std::count(joints_.begin(), joints_.end(), model_.actuator_trnid[2 * motor]) > 0;
+      const std::string name = NameOf(mjOBJ_ACTUATOR, motor);
+      if (!drives) FailInMjcf("", name, "drives no joint of " + robot_.file());
+    }
+    for (int i = 0; i < robot_.num_joints(); ++i) CheckMotorOf(i);
+  }
+
+  void CheckLinks() const {
+    for (const std::string& link : robot_.mount_links()) {
+      if (mj_name2id(&model_, mjOBJ_BODY, link.c_str()) < 0) {
+        FailInYaml("mount.links", "'" + link + "' is no body of " + mjcf_.path());
+      }
+    }
+  }
+
+  // Each row by itself, seen from the frame before it: so a wrong row is told, and none after it.
+  void CheckKinematics() const {
+    const int n = robot_.num_joints();
+    std::vector<int> sites;
+    for (int i = 0; i < n; ++i) {
+      const std::string name = "dh" + std::to_string(i + 1);
+      sites.push_back(mj_name2id(&model_, mjOBJ_SITE, name.c_str()));
+      if (sites.back() >= 0) continue;
+      const std::string& joint = robot_.joint_names()[static_cast<std::size_t>(i)];
+      throw InputError(mjcf_.path(), mjcf_.Find("joint", "name", joint), "site '" + name + "'",
+                       "is missing: it marks the frame after " + KeyOf(i) + ".dh of " +
+                           InYaml(i, ".dh") + ", beyond joint '" + joint + "'");
+    }
+    const MujocoDataPtr data = MakeMujocoData(model_);
+    std::vector<Difference> worst(static_cast<std::size_t>(n));
+    RandomStream random(1, "robot agreement");
+    for (int k = 0; k < kNumConfigurations; ++k) {
+      const Eigen::VectorXd q = DrawConfiguration(random);
+      for (int i = 0; i < n; ++i) {
+        const int joint = joints_[static_cast<std::size_t>(i)];
+        data->qpos[model_.jnt_qposadr[joint]] = q(i);
+      }
+      mj_kinematics(&model_, data.get());
+      const std::vector<Pose> X_WL = robot_.ComputeLinkPoses(q);
+      Pose X_WA = robot_.X_WB(), X_WA_mjcf = BaseIn(*data);
+      for (int i = 0; i < n; ++i) {
+        const auto row = static_cast<std::size_t>(i);
+        const Pose X_WS = SitePose(*data, sites[row]);
+        // Turned with the joint: there the row's own frame stands at (a, 0, d) whatever q is.
+        const Eigen::Quaterniond turn(
+            Eigen::AngleAxisd(q(i) + robot_.dh()[row].theta_rad, Eigen::Vector3d::UnitZ()));
+        const Pose X_RA = Pose(turn, Eigen::Vector3d::Zero()).Inverse();
+        const Difference difference(X_RA * X_WA.Inverse() * X_WL[row],
+                                    X_RA * X_WA_mjcf.Inverse() * X_WS);
+        if (difference.size() > worst[row].size()) worst[row] = difference;
+        X_WA = X_WL[row];
+        X_WA_mjcf = X_WS;
+      }
+    }
+    for (int i = 0; i < n; ++i) CheckRow(i, worst[static_cast<std::size_t>(i)]);
+  }
+
+ private:
+  // Between where robot.yaml and where the MJCF put a frame.
+  struct Difference {
+    Difference() = default;
+    Difference(const Pose& in_yaml, const Pose& in_mjcf)
+        : p_yaml(in_yaml.translation()),
+          p_mjcf(in_mjcf.translation()),
+          apart_m((p_yaml - p_mjcf).norm()),
+          turned_rad(in_yaml.rotation().angularDistance(in_mjcf.rotation())) {}
+    double size() const { return std::max(apart_m, turned_rad); }
+
+    Eigen::Vector3d p_yaml = Eigen::Vector3d::Zero(), p_mjcf = Eigen::Vector3d::Zero();
+    double apart_m = 0, turned_rad = 0;
+  };
+
+  void CheckRow(int i, const Difference& difference) const {
+    if (difference.size() <= kRounding) return;
+    const std::string site = "dh" + std::to_string(i + 1);
+    FailInYaml(KeyOf(i) + ".dh",
+               "puts its frame at " + scenarios::List(difference.p_yaml.unaryExpr(&Rounded)) +
+                   ", the site '" + site + "' of " + At("site", site) + " is at " +
+                   scenarios::List(difference.p_mjcf.unaryExpr(&Rounded)) + ": " +
+                   Millimetres(difference.apart_m) + " mm and " +
+                   scenarios::Number(Rounded(difference.turned_rad)) +
+                   " rad apart (seen from the frame before, turned with the " + "joint)");
+  }
+
+  void CheckRange(int i, int joint) const {
+    const robot::JointLimits& limits = robot_.limits()[static_cast<std::size_t>(i)];
+    const bool limited = model_.jnt_limited[joint] != 0;
+    CheckLimit(i, "q_min_rad", limits.q_min, limited ? model_.jnt_range[2 * joint] : -kInfinity,
+               "joint", "range");
+    CheckLimit(i, "q_max_rad", limits.q_max, limited ? model_.jnt_range[2 * joint + 1] : kInfinity,
+               "joint", "range");
+  }
+
+  void CheckMotorOf(int i) const {
+    const auto row = static_cast<std::size_t>(i);
+    const std::string& joint = robot_.joint_names()[row];
+    int motor = -1;
+    for (int k = 0; k < model_.nu; ++k) {
+      if (model_.actuator_trnid[2 * k] != joints_[row]) continue;
+      if (motor >= 0) {
+        FailInMjcf("", NameOf(mjOBJ_ACTUATOR, k), "is a second motor of the joint '" + joint + "'");
+      }
+      motor = k;
+    }
+    if (motor < 0) {
+      FailInMjcf("joint", joint, "has no motor, which " + InYaml(i) + " needs");
+    }
+    const bool is_plain = model_.actuator_dyntype[motor] == mjDYN_NONE &&
+                          model_.actuator_gaintype[motor] == mjGAIN_FIXED &&
+                          model_.actuator_biastype[motor] == mjBIAS_NONE &&
+                          model_.actuator_gainprm[mjNGAIN * motor] == 1 &&
+                          model_.actuator_gear[6 * motor] == 1;
+    if (!is_plain) {
+      FailInMjcf("", NameOf(mjOBJ_ACTUATOR, motor), "must be a <motor> of gear 1");
+    }
+    double least = -kInfinity, most = kInfinity;
+    const char* attribute = "ctrlrange";
+    if (model_.actuator_ctrllimited[motor] != 0) {
+      least = model_.actuator_ctrlrange[2 * motor];
+      most = model_.actuator_ctrlrange[2 * motor + 1];
+    }
+    if (model_.actuator_forcelimited[motor] != 0) {
+      if (model_.actuator_forcerange[2 * motor + 1] < most) attribute = "forcerange";
+      least = std::max(least, model_.actuator_forcerange[2 * motor]);
+      most = std::min(most, model_.actuator_forcerange[2 * motor + 1]);
+    }
+    if (!AreSame(-least, most)) {
+      FailInMjcf("", NameOf(mjOBJ_ACTUATOR, motor),
+                 "must have the same limit both ways, has " + scenarios::Number(least) + " and " +
+                     scenarios::Number(most));
+    }
+    CheckLimit(i, "torque_max_n_m", robot_.limits()[row].torque_max, most, "", attribute);
+  }
+
+  // One limit of joint i, which may be infinite on either side: there, nothing is written.
+  void CheckLimit(int i, const std::string& key, double in_yaml, double in_mjcf,
+                  const std::string& tag, const std::string& attribute) const {
+    if (AreSame(in_yaml, in_mjcf)) return;
+    const std::string& joint = robot_.joint_names()[static_cast<std::size_t>(i)];
+    const std::string where =
+        tag.empty() ? mjcf_.path() + ":" + std::to_string(mjcf_.Find("", "joint", joint))
+                    : At(tag, joint);
+    FailInYaml(KeyOf(i) + ".limits." + key,
+               (std::isinf(in_yaml) ? "is not given" : "is " + scenarios::Number(in_yaml)) +
+                   ", but " +
+                   (std::isinf(in_mjcf) ? where + " has no " + attribute
+                                        : "the " + attribute + " of " + where + " says " +
+                                              scenarios::Number(Rounded(in_mjcf))));
+  }
+
+  Eigen::VectorXd DrawConfiguration(RandomStream& random) const {
+    Eigen::VectorXd q(robot_.num_joints());
+    for (int i = 0; i < q.size(); ++i) {
+      const robot::JointLimits& limits = robot_.limits()[static_cast<std::size_t>(i)];
+      const double first = std::max(limits.q_min, std::min(-kUnlimited_rad, limits.q_max - 1));
+      const double last = std::min(limits.q_max, std::max(kUnlimited_rad, limits.q_min + 1));
+      q(i) = first + (last - first) * random.Uniform();
+    }
+    return q;
+  }
+
+  Pose BaseIn(const mjData& data) const {
+    const int body = mj_name2id(&model_, mjOBJ_BODY, kRobotBody);
+    if (body < 0) return Pose();
+    const mjtNum* const R = data.xquat + 4 * body;
+    return Pose(Eigen::Quaterniond(R[0], R[1], R[2], R[3]),
+                Eigen::Map<const Eigen::Vector3d>(data.xpos + 3 * body));
+  }
+
+  Pose SitePose(const mjData& data, int site) const {
+    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(data.site_xmat +
+                                                                           9 * site);
+    return Pose(Eigen::Quaterniond(Eigen::Matrix3d(R)),
+                Eigen::Map<const Eigen::Vector3d>(data.site_xpos + 3 * site));
+  }
+
+  static std::string KeyOf(int i) { return "joints[" + std::to_string(i) + "]"; }
+  std::string InYaml(int i, const std::string& key = ".name") const {
+    return robot_.file() + ":" + std::to_string(robot_.LineOf(KeyOf(i) + key));
+  }
+  std::string At(const std::string& tag, const std::string& name) const {
+    return mjcf_.path() + ":" + std::to_string(mjcf_.Find(tag, "name", name));
+  }
+  std::string NameOf(mjtObj type, int id) const {
+    const char* const name = mj_id2name(&model_, type, id);
+    return name == nullptr ? "" : name;
+  }
+  std::string Joints() const {
+    std::string list;
+    for (int joint = 0; joint < model_.njnt; ++joint) {
+      list += (list.empty() ? "" : ", ") + NameOf(mjOBJ_JOINT, joint);
+    }
+    return list.empty() ? "none" : list;
+  }
+
+  [[noreturn]] void FailInYaml(const std::string& key, const std::string& why) const {
+    throw InputError(robot_.file(), robot_.LineOf(key), key, why);
+  }
+  // `tag` may be empty: what has the name, whatever it is (a motor, a position, ...).
+  [[noreturn]] void FailInMjcf(const std::string& tag, const std::string& name,
+                               const std::string& why) const {
+    throw InputError(mjcf_.path(), mjcf_.Find(tag, "name", name),
+                     (tag.empty() ? "actuator" : tag) + " '" + name + "'", why);
+  }
+
+  const robot::RobotModel& robot_;
+  const mjModel& model_;
+  const MjcfLines mjcf_;
+  std::vector<int> joints_;  // in the model, of each joint of robot.yaml
+};
+
+}  // namespace
+
+void CheckAgreement(const robot::RobotModel& robot, const mjModel& model,
+                    const std::string& mjcf_path) {
+  Comparison comparison(robot, model, mjcf_path);
+  comparison.CheckJoints();
+  comparison.CheckMotors();
+  comparison.CheckLinks();
+  comparison.CheckKinematics();
+}
+
+}  // namespace sidestep::sim
