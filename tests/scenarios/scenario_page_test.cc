@@ -1,0 +1,60 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "sidestep/scenarios/scenario.h"
+#include "tests/support/key_page.h"
+#include "tests/support/temporary_folder.h"
+
+namespace sidestep::scenarios {
+namespace {
+
+const std::string kPage = SIDESTEP_SOURCE_DIR "/docs/scenario.md";
+
+std::string Read(const std::string& text) { return ToYaml(ParseScenario(text, "page.yaml")); }
+
+TEST(ScenarioPage, TellsEveryKeyAsTheReaderHasIt) {
+  for (const std::string& difference : KeyPage(kPage, Read).Differences()) {
+    ADD_FAILURE() << difference;
+  }
+}
+
+// The page with one thing changed, and what the test above must then say.
+TEST(ScenarioPage, IsFoundOutWhereItDiffers) {
+  const struct {
+    const char* old_text;
+    const char* new_text;
+    const char* message;
+  } cases[] = {
+      {"| `planner.sigma_obs` |", "| sigma |", ": has no row for `planner.sigma_obs`"},
+      {"| `planner.sigma_obs` |", "| `planner.sigma` |", "the reader knows no key planner.sigma"},
+      {"| `planner.sigma_obs` |", "| `planner.n_int` |", "is a second row for planner.n_int"},
+      {"  sigma_obs: 0.05\n", "", "its example is refused"},
+      {"  qc: 1\n", "", "the example at the top of the page lacks planner.qc"},
+      {"| `0.95` |", "| `0.9` |", "the default of planner.velocity_scale is not 0.9"},
+      {"| `0.95` |", "| required |", "planner.velocity_scale need not be given"},
+      {"| required | 0.001 to 10 |", "| required | 0.001 to 9 |",
+       "takes 9.000009 for workspace.cell_m, which is beyond"},
+      {"| required | 0.001 to 10 |", "| required | 0.0001 to 10 |",
+       "refuses 0.0001, which is within the page's bounds"},
+  };
+  std::ostringstream page;
+  page << std::ifstream(kPage).rdbuf();
+  const TemporaryFolder folder;
+  const std::string path = (folder.path() / "page.md").string();
+  for (const auto& c : cases) {
+    std::string text = page.str();
+    const std::size_t at = text.find(c.old_text);
+    ASSERT_NE(at, std::string::npos) << c.old_text;
+    text.replace(at, std::string(c.old_text).size(), c.new_text);
+    std::ofstream(path) << text;
+    std::string differences;
+    for (const std::string& one : KeyPage(path, Read).Differences()) differences += one + "\n";
+    EXPECT_NE(differences.find(c.message), std::string::npos) << c.message << "\n" << differences;
+  }
+}
+
+}  // namespace
+}  // namespace sidestep::scenarios
