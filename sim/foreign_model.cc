@@ -20,7 +20,7 @@ using tinyxml2::XMLElement;
 
 // Generous for a robot among some hundred things: a world of ours has some 20 kB and 300 elements.
 constexpr std::size_t kMostBytes = 2 << 20;
-constexpr int kMostElements = 20000, kMostJoints = 256;
+constexpr int kMostElements = 5000, kMostJoints = 256;
 constexpr double kMostTextureBytes = 256 << 20;
 
 // What an attribute may be at most. MuJoCo's memory grows with their squares and products.
@@ -40,8 +40,10 @@ constexpr Bound kBounds[] = {
     {"user", "dim", 1000},   // a sensor's values
 };
 
-// Made to any size from a few words, or of no use here.
-const std::set<std::string_view> kRefused = {"composite", "hfield", "skin", "flexcomp", "plugin"};
+// Made to any size from a few words, or of no use here: robots are made of primitives.
+// (MuJoCo 2.2.2 also crashes on some meshes.)
+const std::set<std::string_view> kRefused = {"composite", "hfield",   "mesh",
+                                             "skin",      "flexcomp", "plugin"};
 
 // The sections that BuildWorldXml writes or takes over from the robot.
 const std::set<std::string_view> kSections = {
@@ -65,13 +67,13 @@ class Walk {
       Fail(element, tag, "is one joint too many, of at most " + std::to_string(kMostJoints));
     }
     if (tag == "include") Fail(element, tag, kNoFiles);
-    if (kRefused.count(tag) > 0) Fail(element, tag, "is no part of a robot of primitives");
     for (const tinyxml2::XMLAttribute* attribute = element.FirstAttribute(); attribute != nullptr;
          attribute = attribute->Next()) {
       // file, and fileright, fileup, ... of a sky
       if (StartsWith(attribute->Name(), "file")) Fail(element, attribute->Name(), kNoFiles);
       CheckBound(element, *attribute);
     }
+    if (kRefused.count(tag) > 0) Fail(element, tag, "is no part of a robot of primitives");
     if (tag == "texture") CountTexture(element);
     for (const XMLElement* child = element.FirstChildElement(); child != nullptr;
          child = child->NextSiblingElement()) {

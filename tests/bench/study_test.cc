@@ -93,6 +93,19 @@ TEST(VaryObstacles, IsAFunctionOfTheSeedAndTheSameForAllObstacles) {
   }
 }
 
+TEST(VaryObstacles, LeavesAScenarioThatItsTraceCanBeReadWith) {
+  const scenarios::Scenario plain =
+      Load("walkway_behaviours", {{"behaviour", "speed_up_4"},
+                                  {"moving_obstacles[0].motion.accelerated.max_speed_m_s", "0.7"}});
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    scenarios::Scenario varied = plain;
+    VaryObstacles(varied, seed);
+    EXPECT_EQ(scenarios::ToYaml(scenarios::ParseScenario(scenarios::ToYaml(varied), "trace")),
+              scenarios::ToYaml(varied))
+        << seed;
+  }
+}
+
 TEST(FreePathSearch, FindsTheMotionThatFullKnowledgeFinds) {
   scenarios::Scenario scenario = Load("hsr_walkway");
   const robot::RobotModel robot = RobotOf(scenario);
