@@ -16,6 +16,10 @@ namespace {
 // How far a thing's border may move between two scans, when it comes off another.
 constexpr int kCellsAScan = 2;
 
+// By what share of its cells a thing may seem to grow or shrink when it only turns: cells along its
+// surface.
+constexpr double kTurnedCells = 0.2;
+
 std::array<int, 3> Extent(const Component& component) {
   std::array<int, 3> extent;
   for (std::size_t a = 0; a < 3; ++a) extent[a] = component.last[a] - component.first[a] + 1;
@@ -217,8 +221,13 @@ void ObjectTracker::Follow(Track& track, const Component& component, EpisodeTime
   const bool deformed = is_other && is_whole && !track.cut_off;
   const bool completed = is_whole && track.cut_off;
   const bool grew = is_longer && component.cells.size() > track.num_cells;
-  AddSighting(track,
-              See(t, deformed ? PredictPosition(track.object, t) : Locate(track, component)));
+  // What turns has another outline of about as many cells, and its middle is where they are; what
+  // merges with another thing or parts from it has more or fewer.
+  const auto before = static_cast<double>(track.num_cells);
+  const auto now = static_cast<double>(component.cells.size());
+  const bool is_as_large = std::abs(now - before) <= kTurnedCells * before;
+  const bool is_seen = !deformed || is_as_large;
+  AddSighting(track, See(t, is_seen ? Locate(track, component) : PredictPosition(track.object, t)));
   if (deformed || completed || grew) TakeShape(track, component);
 }
 
