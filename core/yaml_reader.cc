@@ -175,6 +175,14 @@ struct YamlReader::Node {
     known.insert(key);
     return ChildOf(yaml, key);
   }
+  // What `key` leads to, or "key[3]" to an item of its list.
+  YAML::Node FindItem(const std::string& key) const {
+    const YAML::Node found = Find(key);
+    const std::size_t bracket = key.find('[');
+    if (found.IsDefined() || bracket == std::string::npos) return found;
+    const std::size_t length = key.find(']') - bracket - 1;
+    return ChildOf(ChildOf(yaml, key.substr(0, bracket)), key.substr(bracket + 1, length));
+  }
   // The line of `key`, or of the list in which `key`, "list[3]", is an item; else of this map.
   int LineOfKey(const std::string& key) const {
     const std::string name = key.substr(0, key.find('['));
@@ -345,6 +353,19 @@ std::vector<double> YamlReader::GetDoubles(const std::string& key) const {
   return values;
 }
 
+std::vector<std::vector<double>> YamlReader::GetRows(const std::string& key) const {
+  std::vector<std::vector<double>> rows;
+  for (const YAML::Node& row : node_->RequireSequence(key)) {
+    const std::string row_key = key + "[" + std::to_string(rows.size()) + "]";
+    if (!row.IsSequence()) node_->FailAt(row, row_key, "must be a list, is " + Describe(row));
+    std::vector<double>& numbers = rows.emplace_back();
+    for (const YAML::Node& item : row) {
+      numbers.push_back(node_->Number(item, row_key + "[" + std::to_string(numbers.size()) + "]"));
+    }
+  }
+  return rows;
+}
+
 Eigen::VectorXd YamlReader::GetVector(const std::string& key, int length) const {
   const std::vector<double> values = GetDoubles(key);
   if (static_cast<int>(values.size()) != length) {
@@ -468,7 +489,7 @@ int YamlReader::Line(const std::string& key) const {
 }
 
 void YamlReader::Fail(const std::string& key, const std::string& why) const {
-  node_->FailAt(node_->Find(key), key, why);
+  node_->FailAt(node_->FindItem(key), key, why);
 }
 
 }  // namespace sidestep

@@ -40,6 +40,8 @@ class YamlReader {
   double GetPositive(const std::string& key) const;  ///< at least 1 / kLargestNumber
   double GetNonNegative(const std::string& key) const;
   std::vector<double> GetDoubles(const std::string& key) const;  ///< each as GetDouble, any length
+  /// A list of lists of numbers, each as GetDouble, of any lengths.
+  std::vector<std::vector<double>> GetRows(const std::string& key) const;
   Eigen::VectorXd GetVector(const std::string& key, int length) const;
   Eigen::Vector3d GetVector3(const std::string& key) const;
   Eigen::Vector3d GetPositiveVector3(const std::string& key) const;
@@ -72,7 +74,8 @@ class YamlReader {
   /// The line of the value of `key` (of the map itself if it is absent), counted from 1.
   int Line(const std::string& key) const;
 
-  /// Throws the InputError for `key` at its line (or at the map's own line if it is absent).
+  /// Throws the InputError for `key`, or for an item of its list by "key[3]", at its line (or at
+  /// the map's own line if it is absent).
   [[noreturn]] void Fail(const std::string& key, const std::string& why) const;
 
  private:

@@ -46,6 +46,12 @@ Eigen::Matrix3Xd Thinned(const Eigen::Matrix3Xd& path) {
   return thinned.leftCols(count);
 }
 
+// No point of a box is further from where it was than this.
+double MostMoved(const Pose& before, const Pose& after, const Eigen::Vector3d& half_extents_m) {
+  return (after.translation() - before.translation()).norm() +
+         after.rotation().angularDistance(before.rotation()) * half_extents_m.norm();
+}
+
 }  // namespace
 
 ScenePainter::ScenePainter(const GlContext&, TraceModel& trace, int width, int height)
@@ -119,12 +125,12 @@ void ScenePainter::DrawPredictions(Overlay& overlay, const CycleRecord& cycle, E
   for (const PredictedObject& object : cycle.objects) {
     if (object.X_WO.empty()) continue;
     EpisodeTime moment = t;
-    std::optional<Eigen::Vector3d> previous;
+    std::optional<Pose> previous;
     for (const double opacity : kOpacities) {
       moment = moment + kStep;
       const Pose X_WO = PoseAt(object.t, object.X_WO, moment);
-      if (previous && (X_WO.translation() - *previous).norm() < kApart_m) continue;
-      previous = X_WO.translation();
+      if (previous && MostMoved(*previous, X_WO, object.half_extents_m) < kApart_m) continue;
+      previous = X_WO;
       overlay.DrawBox(X_WO, object.half_extents_m, kPredictionColor, opacity / 3, 3 * opacity);
     }
   }

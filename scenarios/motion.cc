@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <random>
 
 #include "sidestep/scenarios/scenario.h"
@@ -49,7 +50,12 @@ Eigen::Vector3d PositionAfter(const CircleMotion& motion, double elapsed_s) {
          motion.radius_m * Eigen::Vector3d(std::cos(angle_rad), std::sin(angle_rad), 0);
 }
 
-Eigen::Vector3d PositionAfter(const RandomWalkMotion& motion, double elapsed_s) {
+struct Walker {
+  Eigen::Vector3d p_WO;
+  double heading_rad;
+};
+
+Walker WalkFor(const RandomWalkMotion& motion, double elapsed_s) {
   std::mt19937_64 generator(motion.seed);
   std::normal_distribution<double> turn(0, motion.turn_rad);
   Eigen::Vector3d position_m = motion.start_m;
@@ -59,9 +65,76 @@ Eigen::Vector3d PositionAfter(const RandomWalkMotion& motion, double elapsed_s) 
     position_m +=
         leg_s * motion.speed_m_s * Eigen::Vector3d(std::cos(heading_rad), std::sin(heading_rad), 0);
     elapsed_s -= leg_s;
-    if (!(elapsed_s > 0)) return position_m;
+    if (!(elapsed_s > 0)) return {position_m, heading_rad};
     if (motion.turn_rad > 0) heading_rad += turn(generator);
   }
+}
+
+Eigen::Vector3d PositionAfter(const RandomWalkMotion& motion, double elapsed_s) {
+  return WalkFor(motion, elapsed_s).p_WO;
+}
+
+// The time on the track's own clock.
+double TrackTime(const RecordedMotion& motion, double elapsed_s) {
+  const double recorded_m_s = motion.track->mean_speed_m_s();
+  return recorded_m_s > 0 ? motion.speed_m_s / recorded_m_s * elapsed_s : elapsed_s;
+}
+
+Eigen::Vector3d PositionAfter(const RecordedMotion& motion, double elapsed_s) {
+  return motion.track->Position(TrackTime(motion, elapsed_s));
+}
+
+Eigen::Vector3d AlongHeading(double heading_rad) {
+  return {std::cos(heading_rad), std::sin(heading_rad), 0};
+}
+
+bool IsLevel(const Eigen::Vector3d& direction) {
+  return direction.head<2>().norm() > 1e-6 * direction.norm();
+}
+
+Eigen::Vector3d DirectionAfter(const LinearMotion& motion, double) { return motion.direction; }
+
+Eigen::Vector3d DirectionAfter(const WaypointMotion& motion, double elapsed_s) {
+  double left_m = elapsed_s * motion.speed_m_s;
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+  for (std::size_t i = 1; i < motion.points_m.size(); ++i) {
+    const Eigen::Vector3d leg = motion.points_m[i] - motion.points_m[i - 1];
+    if (IsLevel(leg)) direction = leg;
+    left_m -= leg.norm();
+    if (left_m < 0 && IsLevel(direction)) break;
+  }
+  return direction;
+}
+
+Eigen::Vector3d DirectionAfter(const AcceleratedMotion& motion, double) {
+  return motion.direction;  // it does not turn back
+}
+
+Eigen::Vector3d DirectionAfter(const CircleMotion& motion, double elapsed_s) {
+  const double turned_rad = elapsed_s * motion.speed_m_s / motion.radius_m;
+  const double angle_rad = motion.start_angle_rad + (motion.clockwise ? -turned_rad : turned_rad);
+  const Eigen::Vector3d left(-std::sin(angle_rad), std::cos(angle_rad), 0);
+  return motion.clockwise ? Eigen::Vector3d(-left) : left;
+}
+
+Eigen::Vector3d DirectionAfter(const RandomWalkMotion& motion, double elapsed_s) {
+  return AlongHeading(WalkFor(motion, elapsed_s).heading_rad);
+}
+
+Eigen::Vector3d DirectionAfter(const RecordedMotion& motion, double elapsed_s) {
+  return AlongHeading(motion.track->Heading(TrackTime(motion, elapsed_s)));
+}
+
+// What the motion itself adds to the obstacle's own orientation, if it turns at all.
+std::optional<Eigen::Quaterniond> TurnAt(const MovingObstacle& obstacle, EpisodeTime t) {
+  if (obstacle.faces_path) {
+    const Eigen::Vector3d direction = DirectionAt(obstacle.motion, t);
+    const double yaw_rad = std::atan2(direction.y(), direction.x());  // 0 of zero
+    return Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()));
+  }
+  const auto* const recorded = std::get_if<RecordedMotion>(&obstacle.motion);
+  if (recorded == nullptr || !recorded->track->has_rotations()) return std::nullopt;
+  return recorded->track->Rotation(TrackTime(*recorded, Elapsed(*recorded, t.seconds())));
 }
 
 }  // namespace
@@ -70,7 +143,15 @@ Pose PoseAt(const MovingObstacle& obstacle, EpisodeTime t) {
   const Eigen::Vector3d p_WO = std::visit(
       [&](const auto& motion) { return PositionAfter(motion, Elapsed(motion, t.seconds())); },
       obstacle.motion);
-  return Pose::FromRollPitchYaw(obstacle.rpy_rad, p_WO);
+  const Pose X_WO = Pose::FromRollPitchYaw(obstacle.rpy_rad, p_WO);
+  const std::optional<Eigen::Quaterniond> turn = TurnAt(obstacle, t);
+  return turn ? Pose(*turn * X_WO.rotation(), p_WO) : X_WO;
+}
+
+Eigen::Vector3d DirectionAt(const Motion& motion, EpisodeTime t) {
+  const Eigen::Vector3d direction = std::visit(
+      [&](const auto& any) { return DirectionAfter(any, Elapsed(any, t.seconds())); }, motion);
+  return IsLevel(direction) ? direction : Eigen::Vector3d(0, 0, 0);
 }
 
 }  // namespace sidestep::scenarios

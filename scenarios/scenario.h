@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "sidestep/core/pose.h"
 #include "sidestep/core/shape.h"
 #include "sidestep/core/time.h"
+#include "sidestep/scenarios/recorded_track.h"
 #include "sidestep/scenarios/sensor_settings.h"
 
 namespace sidestep::scenarios {
@@ -78,15 +80,27 @@ struct RandomWalkMotion {
   double stop_at_s = 0;
   double begin_at_s = 0;
 };
-using Motion =
-    std::variant<LinearMotion, WaypointMotion, AcceleratedMotion, CircleMotion, RandomWalkMotion>;
+/// Along a recorded track, whose times count from `begin_at_s`. Its clock runs so fast that the
+/// mean speed while it moves (RecordedTrack::mean_speed_m_s) becomes speed_m_s: as recorded if they
+/// are equal, at rest at its start if speed_m_s is 0. A track that stays in one place runs as
+/// recorded.
+struct RecordedMotion {
+  std::shared_ptr<const RecordedTrack> track;  ///< never null
+  double speed_m_s = 0;
+  double stop_at_s = 0;
+  double begin_at_s = 0;
+};
+using Motion = std::variant<LinearMotion, WaypointMotion, AcceleratedMotion, CircleMotion,
+                            RandomWalkMotion, RecordedMotion>;
 
 struct MovingObstacle {
   std::string name;
   Shape shape;              ///< what contact, clearance and occupancy use
-  Eigen::Vector3d rpy_rad;  ///< fixed orientation
+  Eigen::Vector3d rpy_rad;  ///< orientation; relative to that of the motion, if that turns
   Motion motion;
   std::string appearance;  ///< a body of models/ to draw inside the shape; empty: draw the shape
+  /// Turned about z so that its x axis (before rpy_rad) points where it goes, see DirectionAt.
+  bool faces_path = false;
 };
 
 struct Scenario {
@@ -146,6 +160,13 @@ void ScaleSpeeds(Scenario& scenario, double factor);
 
 /// Where an obstacle is at `t`. Before 0 it rests at its start.
 Pose PoseAt(const MovingObstacle& obstacle, EpisodeTime t);
+
+/// Along which way a motion goes at `t`: a vector in W of any length whose level part is not zero,
+/// or zero if it never goes on the level. At rest it is the way it went last or, before it has
+/// moved, will go first; so it is on a vertical leg of waypoints. As continuous as the motion's
+/// direction: it jumps where waypoints have a corner and a random walk turns; of a recorded track
+/// it is RecordedTrack::Heading.
+Eigen::Vector3d DirectionAt(const Motion& motion, EpisodeTime t);
 
 /// The names of all scenarios in a folder, sorted.
 std::vector<std::string> ScenarioNames(const std::string& directory);

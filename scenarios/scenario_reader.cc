@@ -2,11 +2,14 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <set>
 
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/yaml_reader.h"
 #include "sidestep/scenarios/scenario.h"
+#include "sidestep/scenarios/track_file.h"
 
 namespace sidestep::scenarios {
 namespace {
@@ -205,20 +208,63 @@ RandomWalkMotion ReadRandomWalk(const YamlReader& body) {
   return motion;
 }
 
-Motion ReadMotion(const YamlReader& parent) {
+std::vector<TrackSample> ReadSamples(const YamlReader& body) {
+  std::vector<TrackSample> samples;
+  for (const std::vector<double>& row : body.GetRows("samples")) {
+    const std::string key = "samples[" + std::to_string(samples.size()) + "]";
+    if (const auto fault = AppendSample(row, &samples)) {
+      body.Fail(key, (fault->column.empty() ? "" : fault->column + " ") + fault->why);
+    }
+  }
+  if (samples.size() < 2) body.Fail("samples", "must list at least 2 samples");
+  return samples;
+}
+
+// The samples of a file that stands beside the scenario or in a folder there, so that the two are
+// moved and shared together.
+std::vector<TrackSample> ReadSamplesBeside(const std::optional<std::string>& folder,
+                                           const YamlReader& body) {
+  namespace fs = std::filesystem;
+  const fs::path file = body.GetString("file");
+  if (!folder) body.Fail("file", "stands beside a scenario file, and this is none: give samples");
+  if (file.is_absolute() || std::find(file.begin(), file.end(), "..") != file.end()) {
+    body.Fail("file", "must be a path from the scenario's folder that stays in it");
+  }
+  const fs::path path = fs::path(*folder) / file;
+  std::error_code error;
+  if (!fs::exists(path, error)) body.Fail("file", "there is no " + path.string());
+  return ReadTrackFile(path.string());
+}
+
+RecordedMotion ReadRecorded(const std::optional<std::string>& folder, const YamlReader& body) {
+  if (body.Has("samples") && body.Has("file"))
+    body.Fail("file", "must not be given beside samples");
+  if (!body.Has("samples") && !body.Has("file")) body.Fail("samples", "or file must be given");
+  RecordedMotion motion;
+  motion.track = std::make_shared<const RecordedTrack>(
+      body.Has("file") ? ReadSamplesBeside(folder, body) : ReadSamples(body));
+  motion.speed_m_s = motion.track->mean_speed_m_s();
+  return motion;
+}
+
+void ReadMotion(const YamlReader& parent, const std::optional<std::string>& folder,
+                MovingObstacle& obstacle) {
   const YamlReader map = parent.GetMap("motion");
-  const std::string kind = ReadKind(
-      map, "motion", parent, {"linear", "waypoints", "accelerated", "circle", "random_walk"});
+  const std::string kind =
+      ReadKind(map, "motion", parent,
+               {"linear", "waypoints", "accelerated", "circle", "random_walk", "recorded"});
   const YamlReader body = map.GetMap(kind);
-  Motion motion;
+  Motion& motion = obstacle.motion;
   if (kind == "linear") motion = ReadLinear(body);
   if (kind == "waypoints") motion = ReadWaypoints(body);
   if (kind == "accelerated") motion = ReadAccelerated(body);
   if (kind == "circle") motion = ReadCircle(body);
   if (kind == "random_walk") motion = ReadRandomWalk(body);
+  if (kind == "recorded") motion = ReadRecorded(folder, body);
+  const bool has_own_speed = kind == "recorded" && !body.Has("speed_m_s");
   std::visit(
       [&](auto& any) {
-        any.speed_m_s = body.GetNonNegative("speed_m_s");
+        if (!has_own_speed) any.speed_m_s = body.GetNonNegative("speed_m_s");
         any.stop_at_s = ReadOptional(body, "stop_at_s", kNever);
         any.begin_at_s = ReadOptional(body, "begin_at_s", 0);
         if (any.stop_at_s < any.begin_at_s) {
@@ -226,8 +272,13 @@ Motion ReadMotion(const YamlReader& parent) {
         }
       },
       motion);
+  obstacle.faces_path =
+      body.Has("face") && body.GetChoice("face", {"fixed", "along_path"}) == "along_path";
+  const auto* const recorded = std::get_if<RecordedMotion>(&motion);
+  if (obstacle.faces_path && recorded != nullptr && recorded->track->has_rotations()) {
+    body.Fail("face", "cannot be along_path: the samples say how it is turned");
+  }
   body.CheckNoUnknownKeys();
-  return motion;
 }
 
 // Random motions follow from the scenario's seed, each its own way.
@@ -241,7 +292,8 @@ void SeedMotions(Scenario& scenario) {
   }
 }
 
-void ReadMovingObstacles(const YamlReader& top, Scenario& scenario, std::set<std::string>& names) {
+void ReadMovingObstacles(const YamlReader& top, const std::optional<std::string>& folder,
+                         Scenario& scenario, std::set<std::string>& names) {
   if (!top.Has("moving_obstacles")) return;
   for (const YamlReader& map : top.GetMaps("moving_obstacles")) {
     MovingObstacle obstacle;
@@ -250,7 +302,7 @@ void ReadMovingObstacles(const YamlReader& top, Scenario& scenario, std::set<std
     scenario.lines["moving_obstacles[" + index + "].name"] = map.Line("name");
     obstacle.shape = ReadShape(map);
     obstacle.rpy_rad = map.Has("rpy_rad") ? map.GetVector3("rpy_rad") : Eigen::Vector3d(0, 0, 0);
-    obstacle.motion = ReadMotion(map);
+    ReadMotion(map, folder, obstacle);
     scenario.lines["moving_obstacles[" + index + "].motion"] = map.Line("motion");
     obstacle.appearance = map.Has("appearance") ? map.GetString("appearance") : "";
     scenario.lines["moving_obstacles[" + index + "].appearance"] = map.Line("appearance");
@@ -373,7 +425,9 @@ bool HasRobot(const YamlReader& top) {
   return std::any_of(keys.begin(), keys.end(), [&](const char* key) { return top.Has(key); });
 }
 
-Scenario Read(YamlReader top, const std::string& file, const Settings& settings) {
+// @param folder what the file's own references begin at; a text has none.
+Scenario Read(YamlReader top, const std::string& file, const std::optional<std::string>& folder,
+              const Settings& settings) {
   Scenario scenario;
   Settle(top, settings, scenario);
   scenario.file = file;
@@ -390,7 +444,7 @@ Scenario Read(YamlReader top, const std::string& file, const Settings& settings)
   ReadWorkspace(top, scenario);
   scenario.floor_m = top.Has("floor_m") ? top.GetDouble("floor_m") : 0;
   ReadStaticBoxes(top, scenario, names);
-  ReadMovingObstacles(top, scenario, names);
+  ReadMovingObstacles(top, folder, scenario, names);
   if (has_robot) {
     ReadPlanner(top, scenario);
     ReadReplanning(top, scenario);
@@ -435,11 +489,12 @@ std::vector<std::string> ScenarioNames(const std::string& directory) {
 }
 
 Scenario LoadScenario(const std::string& path, const Settings& settings) {
-  return Read(YamlReader::FromFile(path), path, settings);
+  return Read(YamlReader::FromFile(path), path, std::filesystem::path(path).parent_path().string(),
+              settings);
 }
 
 Scenario ParseScenario(const std::string& text, const std::string& name, const Settings& settings) {
-  return Read(YamlReader::FromText(text, name), name, settings);
+  return Read(YamlReader::FromText(text, name), name, std::nullopt, settings);
 }
 
 std::map<std::string, std::vector<std::string>> ScenarioChoices(const std::string& path) {

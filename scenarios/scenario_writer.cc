@@ -79,13 +79,27 @@ std::string KeysOf(const RandomWalkMotion& motion) {
          ", turn_every_s: " + Number(motion.turn_every_s);
 }
 
-std::string MotionText(const Motion& motion) {
+std::string KeysOf(const RecordedMotion& motion) {
+  std::string rows;
+  for (const TrackSample& sample : motion.track->samples()) {
+    Eigen::VectorXd row(sample.R_WO ? 8 : 4);
+    row.head<4>() << sample.t_s, sample.p_WO;
+    if (sample.R_WO) {
+      row.tail<4>() << sample.R_WO->w(), sample.R_WO->x(), sample.R_WO->y(), sample.R_WO->z();
+    }
+    rows += (rows.empty() ? "" : ", ") + List(row);
+  }
+  return "recorded: {samples: [" + rows + "]";
+}
+
+std::string MotionText(const MovingObstacle& obstacle) {
   return std::visit(
-      [](const auto& any) {
+      [&](const auto& any) {
         return "{" + KeysOf(any) + ", speed_m_s: " + Number(any.speed_m_s) +
-               TimesText(any.begin_at_s, any.stop_at_s) + "}}";
+               TimesText(any.begin_at_s, any.stop_at_s) +
+               (obstacle.faces_path ? ", face: along_path" : "") + "}}";
       },
-      motion);
+      obstacle.motion);
 }
 
 const char* Word(bool value) { return value ? "true" : "false"; }
@@ -150,7 +164,7 @@ std::string ToYaml(const Scenario& scenario) {
     line("    shape: " + ShapeText(obstacle.shape));
     if (!obstacle.rpy_rad.isZero(0)) line("    rpy_rad: " + List(obstacle.rpy_rad));
     if (!obstacle.appearance.empty()) line("    appearance: " + Quoted(obstacle.appearance));
-    line("    motion: " + MotionText(obstacle.motion));
+    line("    motion: " + MotionText(obstacle));
   }
   if (has_robot) text += PlannerText(scenario);
   line("knowledge: " + Quoted(scenario.knowledge));

@@ -248,27 +248,9 @@ void AddStaticBox(const scenarios::StaticBox& box, XMLElement* worldbody) {
 
 // X_OA of the appearance in the obstacle's frame: at its foot, looking where it goes.
 Pose AppearancePose(const scenarios::MovingObstacle& obstacle) {
-  struct FirstLeg {
-    Eigen::Vector3d operator()(const scenarios::LinearMotion& motion) const {
-      return motion.direction;
-    }
-    Eigen::Vector3d operator()(const scenarios::WaypointMotion& motion) const {
-      return motion.points_m.at(1) - motion.points_m.at(0);
-    }
-    Eigen::Vector3d operator()(const scenarios::AcceleratedMotion& motion) const {
-      return motion.direction;
-    }
-    Eigen::Vector3d operator()(const scenarios::CircleMotion& motion) const {
-      const double angle_rad = motion.start_angle_rad;
-      const Eigen::Vector3d left(-std::sin(angle_rad), std::cos(angle_rad), 0);
-      return motion.clockwise ? Eigen::Vector3d(-left) : left;
-    }
-    Eigen::Vector3d operator()(const scenarios::RandomWalkMotion& motion) const {
-      return {std::cos(motion.heading_rad), std::sin(motion.heading_rad), 0};
-    }
-  };
   const Pose X_WO = PoseAt(obstacle, EpisodeTime(0));
-  const Eigen::Vector3d ahead_O = X_WO.RotateInverse(std::visit(FirstLeg{}, obstacle.motion));
+  const Eigen::Vector3d ahead_O =
+      X_WO.RotateInverse(scenarios::DirectionAt(obstacle.motion, EpisodeTime(0)));
   const bool level = ahead_O.head<2>().norm() > 1e-6 * ahead_O.norm();
   const double yaw = level ? std::atan2(ahead_O.y(), ahead_O.x()) : 0.0;
   return Pose::FromRollPitchYaw({0, 0, yaw}, {0, 0, -HalfExtents(obstacle.shape).z()});

@@ -52,6 +52,17 @@ TEST_P(EveryPredictor, AnswersThePoseThatWasSeenAtTheTimeOfTheLatestSighting) {
   }
 }
 
+// A history holds positions only; how a thing is turned is added to the answer by who knows it.
+TEST_P(EveryPredictor, DoesNotTurnWhatGoesRoundACurve) {
+  const TrackedObject object = SeenAt(Frames(0, 60), [](double t_s) {
+    return Eigen::Vector3d(std::cos(1.2 * t_s), std::sin(1.2 * t_s), 0.6);
+  });
+  for (const double t_s : {0.0, 2.0, 3.5}) {
+    EXPECT_EQ(predictor_->PredictPose(object, EpisodeTime(t_s)).rotation().vec(),
+              Eigen::Vector3d(0, 0, 0));
+  }
+}
+
 TEST_P(EveryPredictor, IsFiniteAndContinuousBeforeAndAfterThatTime) {
   constexpr double kStep_s = 1e-9;
   for (const TrackedObject& object : Objects()) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sidestep/sdf/prediction/registry.h"
 #include "sidestep/sdf/world_model.h"
 
 namespace sidestep::sdf {
@@ -76,6 +77,32 @@ TEST(WorldModel, PredictsNamedObjectsWithTheirExactShapeAndTurn) {
     }
   }
   EXPECT_EQ(model->DescribeObjects({EpisodeTime(1)}).size(), 1u);
+}
+
+// No predictor says how a thing goes on turning.
+TEST(WorldModel, PredictsThatNamedObjectsStayTurnedAsTheyWereSeenLast) {
+  for (const std::string& predictor : PredictorNames()) {
+    WorldModelOptions options;
+    options.predictor = predictor;
+    options.grid = {{-1, -1, -1}, 0.05, {41, 41, 41}};
+    options.max_distance_m = 0.3;
+    const auto model = MakeWorldModel(options);
+    Pose X_WO;
+    for (int k = 0; k <= 10; ++k) {
+      Scan scan = Tags(0.1 * k);
+      X_WO = Pose::FromRollPitchYaw({0, 0.1, 0.12 * k}, scan.objects[0].X_WO.translation());
+      scan.objects[0].X_WO = X_WO;
+      model->Observe(scan);
+    }
+    model->MakeField();
+    const std::vector<EpisodeTime> times = {EpisodeTime(1), EpisodeTime(1.5), EpisodeTime(3)};
+    const auto described = model->DescribeObjects(times);
+    ASSERT_EQ(described.size(), 1u);
+    EXPECT_LT((described[0].X_WO[0].translation() - X_WO.translation()).norm(), 1e-9) << predictor;
+    for (const Pose& predicted : described[0].X_WO) {
+      EXPECT_LT(predicted.rotation().angularDistance(X_WO.rotation()), 1e-7) << predictor;
+    }
+  }
 }
 
 TEST(WorldModel, TakesNamedObjectsForSolidsWhereItDoesNotPredict) {
