@@ -6,7 +6,7 @@ include(CMakePackageConfigHelpers)
 
 install(TARGETS sidestep RUNTIME COMPONENT command)
 install(DIRECTORY models scenarios DESTINATION ${CMAKE_INSTALL_DATADIR}/sidestep COMPONENT command
-        FILES_MATCHING PATTERN "*.yaml" PATTERN "*.xml")
+        FILES_MATCHING PATTERN "*.yaml" PATTERN "*.xml" PATTERN "*.csv")
 set(manual ${PROJECT_BINARY_DIR}/cli/manual)
 install(DIRECTORY ${manual}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT command)
 install(FILES ${manual}/completions/sidestep
