@@ -237,12 +237,12 @@ std::vector<TrackSample> ReadSamplesBeside(const std::optional<std::string>& fol
 }
 
 RecordedMotion ReadRecorded(const std::optional<std::string>& folder, const YamlReader& body) {
-  if (body.Has("samples") && body.Has("file"))
-    body.Fail("file", "must not be given beside samples");
-  if (!body.Has("samples") && !body.Has("file")) body.Fail("samples", "or file must be given");
+  const bool has_file = body.Has("file"), has_samples = body.Has("samples");
+  if (has_file && has_samples) body.Fail("file", "must not be given beside samples");
+  if (!has_file && !has_samples) body.Fail("samples", "or file must be given");
   RecordedMotion motion;
-  motion.track = std::make_shared<const RecordedTrack>(
-      body.Has("file") ? ReadSamplesBeside(folder, body) : ReadSamples(body));
+  motion.track = std::make_shared<const RecordedTrack>(has_file ? ReadSamplesBeside(folder, body)
+                                                                : ReadSamples(body));
   motion.speed_m_s = motion.track->mean_speed_m_s();
   return motion;
 }
