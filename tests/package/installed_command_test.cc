@@ -80,7 +80,7 @@ TEST_F(InstalledCommand, BringsEveryModelAndScenarioOfTheSource) {
     for (const auto& entry :
          fs::recursive_directory_iterator(fs::path(SIDESTEP_SOURCE_DIR) / data)) {
       const std::string ending = entry.path().extension().string();
-      if (ending != ".yaml" && ending != ".xml") continue;
+      if (ending != ".yaml" && ending != ".xml" && ending != ".csv") continue;
       const fs::path name = entry.path().lexically_relative(SIDESTEP_SOURCE_DIR);
       EXPECT_EQ(Slurp(installation_.prefix() / "share/sidestep" / name), Slurp(entry.path()))
           << name;
