@@ -49,6 +49,6 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libsidestep-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "cmake, pkg-config, libavcodec-dev, libavformat-dev, libavutil-dev, libceres-dev, libeigen3-dev, \
-libhdf5-dev, libhwy-dev, libmujoco-dev, libosmesa6-dev, libqhull-dev, libswscale-dev, libtbb-dev, \
-libtinyxml2-dev, libyaml-cpp-dev, nlohmann-json3-dev")
+libfmt-dev, libhdf5-dev, libhwy-dev, libmujoco-dev, libosmesa6-dev, libqhull-dev, libswscale-dev, \
+libtbb-dev, libtinyxml2-dev, libyaml-cpp-dev, nlohmann-json3-dev")
 include(CPack)

@@ -8,13 +8,13 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/text_file.h"
+#include "sidestep/core/utf8.h"
 
 namespace sidestep {
 namespace {
@@ -23,25 +23,6 @@ namespace {
 constexpr std::uintmax_t kMaxFileBytes = 1 << 20;
 // yaml-cpp recurses once for each level; a hostile file must not exhaust the stack.
 constexpr int kMaxDepth = 64;
-
-std::string ReadSmallTextFile(const std::string& path) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) throw InputError(path, "no such file");
-  if (fs::is_directory(status)) throw InputError(path, "is a directory, not a file");
-  if (!fs::is_regular_file(status)) throw InputError(path, "is not a regular file");
-  const std::uintmax_t size = fs::file_size(path, error);
-  if (!error && size > kMaxFileBytes) {
-    throw InputError(path, "is " + std::to_string(size) + " bytes long, must be at most " +
-                               std::to_string(kMaxFileBytes));
-  }
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError(path, "cannot be read");
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
 
 // Refuses what yaml-cpp would recurse into too deeply. Only flow brackets and indentation nest.
 void CheckText(const std::string& text, const std::string& name) {
@@ -104,7 +85,7 @@ void CheckOneDocument(const std::string& text, const std::string& name) {
 // `text` in quotes, cut where it would make a message unreadable.
 std::string Quote(const std::string& text) {
   constexpr std::size_t kLongest = 60;
-  return "'" + (text.size() <= kLongest ? text : text.substr(0, kLongest) + "...") + "'";
+  return "'" + (text.size() <= kLongest ? text : Utf8Prefix(text, kLongest) + "...") + "'";
 }
 
 std::string Describe(const YAML::Node& node) {
@@ -275,10 +256,11 @@ YamlReader::YamlReader(YamlReader&&) noexcept = default;
 YamlReader& YamlReader::operator=(YamlReader&&) noexcept = default;
 
 YamlReader YamlReader::FromFile(const std::string& path) {
-  return FromText(ReadSmallTextFile(path), path);
+  return FromText(ReadTextFile(path, kMaxFileBytes), path);
 }
 
-YamlReader YamlReader::FromText(const std::string& text, const std::string& name) {
+YamlReader YamlReader::FromText(const std::string& bytes, const std::string& name) {
+  const std::string text = DecodeText(bytes, name);
   CheckText(text, name);
   auto node = std::make_unique<Node>();
   node->file = name;
@@ -419,6 +401,7 @@ Pose YamlReader::GetPose(const std::string& key) const {
 
 void YamlReader::Set(const std::string& path, const std::string& value, const std::string& origin) {
   const auto fail = [&](const std::string& why) { throw InputError(origin + " " + path, why); };
+  if (FindInvalidUtf8(value) < value.size()) fail("must be UTF-8, is " + Quote(value));
   CheckText(value, origin + " " + path);
   const std::vector<std::string> keys = KeysOf(path);
   if (keys.empty()) fail("is no key");

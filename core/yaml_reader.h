@@ -22,10 +22,11 @@ class YamlReader {
   static constexpr double kLargestNumber = 1e12;
 
   /// Reads a whole file, whose top must be a map.
-  /// @throws InputError if it is missing, a directory, over 1 MiB, not text, or not YAML.
+  /// @throws InputError if it is missing, a directory, over 1 MiB, not UTF-8 (a byte-order mark and
+  ///   CRLF are taken), or not YAML.
   static YamlReader FromFile(const std::string& path);
   /// The same from a text; `name` stands for the file in messages.
-  static YamlReader FromText(const std::string& text, const std::string& name);
+  static YamlReader FromText(const std::string& bytes, const std::string& name);
 
   ~YamlReader();
   YamlReader(YamlReader&&) noexcept;

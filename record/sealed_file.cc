@@ -1,16 +1,16 @@
 #include "sidestep/record/sealed_file.h"
 
-#include <unistd.h>
+#include <fmt/core.h>
 
 #include <cerrno>
 #include <charconv>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string_view>
 
+#include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
 
 namespace sidestep::record {
@@ -29,12 +29,9 @@ std::uint64_t Checksum(std::span<const unsigned char> bytes) {
 }
 
 std::string MakeHead(const SealedFormat& format, std::span<const unsigned char> payload) {
-  char checksum[17];
-  std::snprintf(checksum, sizeof checksum, "%016llx",
-                static_cast<unsigned long long>(Checksum(payload)));
   std::string head = format.name + " " + std::to_string(format.version) + "\n";
   head += std::string(kLengthKey) + std::to_string(payload.size()) + "\n";
-  head += std::string(kChecksumKey) + checksum + "\n";
+  head += std::string(kChecksumKey) + fmt::format("{:016x}\n", Checksum(payload));
   head.resize(kHeadBytes, '\n');
   return head;
 }
@@ -48,27 +45,6 @@ long long NumberAfter(std::string_view head, std::string_view key) {
   return number;
 }
 
-// Removes the file unless it was kept.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(std::string path) : path_(std::move(path)) {}
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  ~TemporaryFile() {
-    if (!kept_) std::remove(path_.c_str());
-  }
-  const std::string& path() const { return path_; }
-  void Keep() { kept_ = true; }
-
- private:
-  std::string path_;
-  bool kept_ = false;
-};
-
-[[noreturn]] void FailToWrite(const std::string& path) {
-  throw InputError(path, std::string("cannot be written: ") + std::strerror(errno));
-}
-
 }  // namespace
 
 std::string SealedBytes(const SealedFormat& format, std::span<const unsigned char> payload) {
@@ -79,18 +55,10 @@ std::string SealedBytes(const SealedFormat& format, std::span<const unsigned cha
 
 void WriteSealedFile(const std::string& path, const SealedFormat& format,
                      std::span<const unsigned char> payload) {
-  TemporaryFile temporary(path + "." + std::to_string(getpid()) + ".part");
-  const std::string bytes = SealedBytes(format, payload);
-  std::FILE* const file = std::fopen(temporary.path().c_str(), "wb");
-  if (file == nullptr) FailToWrite(path);
-  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size() &&
-                       std::fflush(file) == 0 && fsync(fileno(file)) == 0;
-  const int write_error = errno;
-  const bool closed = std::fclose(file) == 0;
-  if (!written) errno = write_error;
-  if (!written || !closed) FailToWrite(path);
-  if (std::rename(temporary.path().c_str(), path.c_str()) != 0) FailToWrite(path);
-  temporary.Keep();
+  AtomicFile file(path);
+  file.Append(MakeHead(format, payload));
+  file.Append({reinterpret_cast<const char*>(payload.data()), payload.size()});
+  file.Commit();
 }
 
 std::vector<unsigned char> ReadSealedFile(const std::string& path, const SealedFormat& format) {

@@ -18,8 +18,8 @@ struct SealedFormat {
 /// Head and payload as they stand in a file.
 std::string SealedBytes(const SealedFormat& format, std::span<const unsigned char> payload);
 
-/// Writes head and payload under a temporary name beside `path`, then renames: a reader sees the
-/// old file or the new one, never half of one. @throws InputError if it cannot be written.
+/// Writes head and payload as an AtomicFile (core/atomic_file.h).
+/// @throws InputError if it cannot be written.
 void WriteSealedFile(const std::string& path, const SealedFormat& format,
                      std::span<const unsigned char> payload);
 
