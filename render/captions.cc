@@ -1,10 +1,9 @@
 #include "sidestep/render/captions.h"
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
+#include "sidestep/core/number_text.h"
 #include "sidestep/record/questions.h"
 #include "sidestep/render/timeline.h"
 
@@ -19,14 +18,9 @@ struct Wording {
 };
 
 std::string Millimetres(double metres) {
-  return std::to_string(std::lround(1000 * metres)) + " mm";
+  return FiniteText("{:.0f} mm", std::round(1000 * metres) + 0.0);  // never -0
 }
-
-std::string Seconds(double seconds) {
-  std::array<char, 32> text;
-  std::snprintf(text.data(), text.size(), "%.2f s", seconds);
-  return text.data();
-}
+std::string Seconds(double seconds) { return FiniteText("{:.2f} s", seconds); }
 
 }  // namespace
 

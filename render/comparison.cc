@@ -1,12 +1,11 @@
 #include "sidestep/render/comparison.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/number_text.h"
 #include "sidestep/record/questions.h"
 #include "sidestep/render/timeline.h"
 #include "sidestep/render/view_choice.h"
@@ -33,12 +32,6 @@ int ToPixels(double length) { return static_cast<int>(std::lround(length)); }
 // Columns of the grid: as square as can be, two traces side by side.
 int NumColumns(std::size_t num_traces) {
   return static_cast<int>(std::ceil(std::sqrt(static_cast<double>(num_traces))));
-}
-
-std::string Format(const char* format, double value) {
-  std::array<char, 64> text;
-  std::snprintf(text.data(), text.size(), format, value);
-  return text.data();
 }
 
 }  // namespace
@@ -135,12 +128,25 @@ EpisodeTime Comparison::telling_moment() const {
   return least ? least->t : EpisodeTime(0);
 }
 
+std::vector<std::string> Comparison::names_not_shown() const {
+  std::vector<std::string> names = {heading_};
+  for (const Panel& panel : panels_) {
+    names.push_back(panel.title.name);
+    const std::vector<std::string>& obstacles = panel.model.recording().obstacles;
+    names.insert(names.end(), obstacles.begin(), obstacles.end());
+  }
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  std::erase_if(names, Font::HasAll);
+  return names;
+}
+
 void Comparison::DrawHeader(Image& image, EpisodeTime t) const {
   const double line = kLargeText * scale_;
   const double y = (kHeaderHeight - kLargeText) / 2 * scale_;
   font_.Draw(image, kTextInset * scale_, y, line, kWhite, heading_);
-  std::string clock = "t = " + Format("%.2f s", t.seconds());
-  if (playback_speed_ != 1) clock += Format("  (played at %g x)", playback_speed_);
+  std::string clock = "t = " + FiniteText("{:.2f} s", t.seconds());
+  if (playback_speed_ != 1) clock += FiniteText("  (played at {:g} x)", playback_speed_);
   font_.Draw(image, width_ - font_.Width(clock, line) - kTextInset * scale_, y, line, kWhite,
              clock);
 }
@@ -198,7 +204,7 @@ void Comparison::DrawPanel(Image& image, Panel& panel, EpisodeTime t) const {
   x = font_.Draw(image, place.x + inset, bar_y + (bar - text * status_shrink) / 2,
                  text * status_shrink, kWhite, status.text);
   const std::string note =
-      finished ? "finished" : "obstacle " + Format("%.2f m/s", ObstacleSpeedAt(recording, t));
+      finished ? "finished" : "obstacle " + FiniteText("{:.2f} m/s", ObstacleSpeedAt(recording, t));
   const double note_x = place.x + place.width - inset - font_.Width(note, small);
   if (note_x > x + inset && (finished || !recording.obstacles.empty())) {
     font_.Draw(image, note_x, bar_y + (bar - small) / 2, small, kWhite, note);

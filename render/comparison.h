@@ -47,6 +47,10 @@ class Comparison {
   /// The moment that tells most: the first contact; if there is none, the least clearance.
   EpisodeTime telling_moment() const;
 
+  /// Of the names that are written on the pictures, those with letters that the font has not, and
+  /// that show as '?'.
+  std::vector<std::string> names_not_shown() const;
+
   Image Draw(EpisodeTime t);
 
  private:

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
+#include "sidestep/core/utf8.h"
 #include "sidestep/render/mujoco_drawing.h"
 #include "sidestep/sim/mujoco_model.h"
 
@@ -41,22 +43,33 @@ Font::Font(const GlContext&) {
   }
 }
 
-const Font::Glyph& Font::GlyphOf(char letter) const {
-  if (letter < kFirst || letter > kLast) letter = '?';
-  return glyphs_[static_cast<std::size_t>(letter - kFirst)];
+bool Font::HasAll(const std::string& text) {
+  return std::all_of(text.begin(), text.end(),
+                     [](char letter) { return letter >= kFirst && letter <= kLast; });
+}
+
+std::vector<const Font::Glyph*> Font::GlyphsOf(const std::string& text) const {
+  std::vector<const Glyph*> glyphs;
+  for (std::size_t at = 0; at < text.size();) {
+    const char letter = text[at];
+    const bool known = letter >= kFirst && letter <= kLast;
+    glyphs.push_back(&glyphs_[static_cast<std::size_t>((known ? letter : '?') - kFirst)]);
+    at += std::max<std::size_t>(1, Utf8Length(std::string_view(text).substr(at)));
+  }
+  return glyphs;
 }
 
 double Font::Width(const std::string& text, double line_height) const {
   int width = 0;
-  for (const char letter : text) width += GlyphOf(letter).width;
+  for (const Glyph* const glyph : GlyphsOf(text)) width += glyph->width;
   return width * line_height / cell_height_;
 }
 
 double Font::Draw(Image& image, double x, double y, double line_height, Color color,
                   const std::string& text) const {
   const double scale = line_height / cell_height_;  // pixels of the image a pixel of the letter
-  for (const char letter : text) {
-    const Glyph& glyph = GlyphOf(letter);
+  for (const Glyph* const letter : GlyphsOf(text)) {
+    const Glyph& glyph = *letter;
     const double width = glyph.width * scale;
     for (int py = static_cast<int>(std::floor(y)); py < y + line_height; ++py) {
       for (int px = static_cast<int>(std::floor(x)); px < x + width; ++px) {

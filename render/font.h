@@ -11,10 +11,14 @@
 namespace sidestep::render {
 
 /// Smooth text of any size. The letters are those that MuJoCo carries for its own overlays: drawn
-/// once at its largest size, then averaged down. Printable ASCII; any other byte shows as '?'.
+/// once at its largest size, then averaged down. Printable ASCII;
+/// any other character shows as one '?'.
 class Font {
  public:
   explicit Font(const GlContext& gl);
+
+  /// Whether it has every letter of `text`.
+  static bool HasAll(const std::string& text);
 
   /// How wide `text` is at this line height [pixels].
   double Width(const std::string& text, double line_height) const;
@@ -30,7 +34,8 @@ class Font {
     int width = 0;                       // of its cell, which is also its advance
     std::vector<std::uint8_t> coverage;  // width x cell_height_, rows from the top, 0 or 1
   };
-  const Glyph& GlyphOf(char letter) const;
+  // Of each character of `text`.
+  std::vector<const Glyph*> GlyphsOf(const std::string& text) const;
 
   int cell_height_ = 0;
   std::array<Glyph, kLast - kFirst + 1> glyphs_;

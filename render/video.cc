@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/number_text.h"
 #include "sidestep/render/video_writer.h"
 
 namespace sidestep::render {
@@ -26,6 +27,12 @@ int RenderVideo(Comparison& comparison, const std::string& path, const VideoOpti
 }
 
 void RenderStill(Comparison& comparison, const std::string& path, std::optional<EpisodeTime> t) {
+  constexpr double kSample_s = 0.01;  // an episode of 6 s may have its last sample at 5.996 s
+  const double end_s = comparison.end().seconds();
+  if (t && t->seconds() > end_s + kSample_s) {
+    throw InputError("--at", "the last episode ends at " + FiniteText("{:.3f} s", end_s) +
+                                 ", before " + FiniteText("{:g} s", t->seconds()));
+  }
   WritePng(comparison.Draw(t.value_or(comparison.telling_moment())), path);
 }
 

@@ -23,7 +23,8 @@ struct VideoOptions {
 int RenderVideo(Comparison& comparison, const std::string& path, const VideoOptions& options,
                 const RenderProgress& progress);
 
-/// Writes one picture as PNG: at `t`, or at the moment that tells most.
+/// Writes one picture as PNG: at `t`, or at the moment that tells most. @throws InputError as
+/// WritePng does, and for a moment after the end of the last episode.
 void RenderStill(Comparison& comparison, const std::string& path, std::optional<EpisodeTime> t);
 
 }  // namespace sidestep::render

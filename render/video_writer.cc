@@ -8,15 +8,17 @@ extern "C" {
 #include <libswscale/swscale.h>
 }
 
-#include <unistd.h>
-
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
+#include <exception>
 #include <stdexcept>
 
+#include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
 
 namespace sidestep::render {
@@ -27,9 +29,10 @@ struct AvDeleter {
   void operator()(AVFrame* frame) const { av_frame_free(&frame); }
   void operator()(AVPacket* packet) const { av_packet_free(&packet); }
   void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
-  void operator()(AVFormatContext* format) const {
-    if (format->pb != nullptr) avio_closep(&format->pb);
-    avformat_free_context(format);
+  void operator()(AVFormatContext* format) const { avformat_free_context(format); }
+  void operator()(AVIOContext* io) const {
+    av_freep(&io->buffer);
+    avio_context_free(&io);
   }
 };
 template <typename T>
@@ -55,23 +58,100 @@ AvPtr<AVFrame> MakeFrame(AVPixelFormat format, int width, int height) {
   return frame;
 }
 
-// A temporary name beside `path`, so that nobody ever sees half a file.
-std::string TemporaryName(const std::string& path) {
-  return path + "." + std::to_string(getpid()) + ".part";
+// What libavformat writes goes into our own file and nowhere else: given a name, it would take
+// `file:x.mp4` or `http://x.mp4` for a protocol and `2026-11-27T10:15:00.mp4` for an unknown one.
+struct Output {
+  AtomicFile file;
+  std::exception_ptr error;  // libavformat is C: what was thrown waits here
+};
+
+// A place in the output; the muxer opens a second one to move the index to the front.
+struct Cursor {
+  Output& output;
+  std::int64_t position = 0;
+
+  // Runs what may throw; a negative result tells libavformat that it failed.
+  template <typename Action>
+  int Try(const Action& action) {
+    try {
+      const int count = action();
+      position += count;
+      return count;
+    } catch (...) {
+      output.error = std::current_exception();
+      return AVERROR(EIO);
+    }
+  }
+};
+
+int ReadSome(void* cursor, std::uint8_t* bytes, int size) {
+  Cursor& from = *static_cast<Cursor*>(cursor);
+  const int count = from.Try([&] {
+    return static_cast<int>(from.output.file.ReadAt(static_cast<std::uint64_t>(from.position),
+                                                    reinterpret_cast<char*>(bytes),
+                                                    static_cast<std::size_t>(size)));
+  });
+  return count == 0 ? AVERROR_EOF : count;
 }
 
-void Rename(const std::string& from, const std::string& to) {
-  if (std::rename(from.c_str(), to.c_str()) == 0) return;
-  const std::string why = std::strerror(errno);
-  std::remove(from.c_str());
-  throw InputError(to, "cannot be written: " + why);
+int WriteSome(void* cursor, std::uint8_t* bytes, int size) {
+  Cursor& to = *static_cast<Cursor*>(cursor);
+  return to.Try([&] {
+    to.output.file.WriteAt(static_cast<std::uint64_t>(to.position),
+                           {reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(size)});
+    return size;
+  });
+}
+
+std::int64_t Seek(void* cursor, std::int64_t offset, int whence) {
+  Cursor& moved = *static_cast<Cursor*>(cursor);
+  const auto size = static_cast<std::int64_t>(moved.output.file.size());
+  if (whence == AVSEEK_SIZE) return size;
+  const std::int64_t base = whence == SEEK_CUR ? moved.position : whence == SEEK_END ? size : 0;
+  if (base + offset < 0) return AVERROR(EINVAL);
+  return moved.position = base + offset;
+}
+
+AVIOContext* OpenCursor(Cursor& cursor, bool for_writing) {
+  constexpr int kBufferBytes = 1 << 15;
+  auto* const buffer = static_cast<unsigned char*>(av_malloc(kBufferBytes));
+  AVIOContext* const io = avio_alloc_context(buffer, kBufferBytes, for_writing ? 1 : 0, &cursor,
+                                             for_writing ? nullptr : &ReadSome,
+                                             for_writing ? &WriteSome : nullptr, &Seek);
+  if (io == nullptr) throw std::bad_alloc();
+  return io;
+}
+
+bool EndsWith(const std::string& text, const std::string& ending) {
+  return text.size() > ending.size() &&
+         std::equal(ending.rbegin(), ending.rend(), text.rbegin(), [](char wanted, char c) {
+           return wanted == std::tolower(static_cast<unsigned char>(c));
+         });
+}
+
+void CheckEnding(const std::string& path, const std::string& ending, const char* kind) {
+  if (!EndsWith(path, ending)) {
+    throw InputError(path, std::string(kind) + " needs a name that ends in " + ending);
+  }
 }
 
 }  // namespace
 
 struct VideoWriter::Encoder {
+  Encoder(const std::string& file_path, int width, int height, int frames_per_second);
+
+  // Rethrows what went wrong below libavformat, else says what it says.
+  void Require(int code) {
+    if (output.error) std::rethrow_exception(output.error);
+    Check(code, path);
+  }
+  // Hands a frame to the encoder (null: no more) and writes what comes out of it.
+  void Encode(const AVFrame* next);
+
   std::string path;
-  std::string temporary;
+  Output output;
+  Cursor writing{output}, reading{output};
+  AvPtr<AVIOContext> io;
   AvPtr<AVFormatContext> format;
   AvPtr<AVCodecContext> codec;
   AVStream* stream = nullptr;  // owned by `format`
@@ -79,20 +159,11 @@ struct VideoWriter::Encoder {
   AvPtr<AVFrame> frame;
   AvPtr<AVPacket> packet;
   int num_frames = 0;
-  bool finished = false;
-
-  ~Encoder() {
-    if (finished) return;
-    format.reset();
-    std::remove(temporary.c_str());
-  }
-
-  void Open(int width, int height, int frames_per_second);
-  // Hands a frame to the encoder (null: no more) and writes what comes out of it.
-  void Encode(const AVFrame* next);
 };
 
-void VideoWriter::Encoder::Open(int width, int height, int frames_per_second) {
+VideoWriter::Encoder::Encoder(const std::string& file_path, int width, int height,
+                              int frames_per_second)
+    : path(file_path), output{AtomicFile(file_path), nullptr} {
   constexpr const char* kQuality = "20";
   const AVCodec* const x264 = avcodec_find_encoder_by_name("libx264");
   if (x264 == nullptr) {
@@ -116,7 +187,7 @@ void VideoWriter::Encoder::Open(int width, int height, int frames_per_second) {
   Check(avcodec_open2(codec.get(), x264, nullptr), path);
 
   AVFormatContext* raw_format = nullptr;
-  Check(avformat_alloc_output_context2(&raw_format, nullptr, "mp4", temporary.c_str()), path);
+  Check(avformat_alloc_output_context2(&raw_format, nullptr, "mp4", nullptr), path);
   format.reset(raw_format);
   format->flags |= AVFMT_FLAG_BITEXACT;
   stream = avformat_new_stream(format.get(), nullptr);
@@ -124,9 +195,23 @@ void VideoWriter::Encoder::Open(int width, int height, int frames_per_second) {
   stream->time_base = codec->time_base;
   stream->avg_frame_rate = codec->framerate;
   Check(avcodec_parameters_from_context(stream->codecpar, codec.get()), path);
-  Check(avio_open(&format->pb, temporary.c_str(), AVIO_FLAG_WRITE), path);
+  io.reset(OpenCursor(writing, /*for_writing=*/true));
+  format->pb = io.get();
+  format->opaque = &reading;
+  format->io_open = [](AVFormatContext* context, AVIOContext** opened, const char*, int flags,
+                       AVDictionary**) {
+    if ((flags & AVIO_FLAG_WRITE) != 0) return AVERROR(EINVAL);
+    auto& cursor = *static_cast<Cursor*>(context->opaque);
+    cursor.position = 0;
+    *opened = OpenCursor(cursor, /*for_writing=*/false);
+    return 0;
+  };
+  format->io_close2 = [](AVFormatContext*, AVIOContext* opened) {
+    AvDeleter()(opened);
+    return 0;
+  };
   av_opt_set(format->priv_data, "movflags", "+faststart", 0);
-  Check(avformat_write_header(format.get(), nullptr), path);
+  Require(avformat_write_header(format.get(), nullptr));
 
   scaler.reset(sws_getContext(width, height, AV_PIX_FMT_RGB24, width, height, AV_PIX_FMT_YUV420P,
                               SWS_BICUBIC | SWS_BITEXACT | SWS_ACCURATE_RND, nullptr, nullptr,
@@ -150,12 +235,11 @@ void VideoWriter::Encoder::Encode(const AVFrame* next) {
     packet->duration = 1;
     packet->stream_index = stream->index;
     av_packet_rescale_ts(packet.get(), codec->time_base, stream->time_base);
-    Check(av_interleaved_write_frame(format.get(), packet.get()), path);
+    Require(av_interleaved_write_frame(format.get(), packet.get()));
   }
 }
 
-VideoWriter::VideoWriter(const std::string& path, int width, int height, int frames_per_second)
-    : encoder_(std::make_unique<Encoder>()) {
+VideoWriter::VideoWriter(const std::string& path, int width, int height, int frames_per_second) {
   if (width < 2 || height < 2 || width % 2 != 0 || height % 2 != 0) {
     throw InputError("--size", std::to_string(width) + "x" + std::to_string(height) +
                                    ": width and height must be even and positive");
@@ -164,9 +248,8 @@ VideoWriter::VideoWriter(const std::string& path, int width, int height, int fra
     throw InputError("--fps", "must be 1 to 240, is " + std::to_string(frames_per_second));
   }
   av_log_set_level(AV_LOG_QUIET);
-  encoder_->path = path;
-  encoder_->temporary = TemporaryName(path);
-  encoder_->Open(width, height, frames_per_second);
+  CheckVideoName(path);
+  encoder_ = std::make_unique<Encoder>(path, width, height, frames_per_second);
 }
 
 VideoWriter::~VideoWriter() = default;
@@ -188,10 +271,10 @@ void VideoWriter::Add(const Image& image) {
 void VideoWriter::Finish() {
   Encoder& encoder = *encoder_;
   encoder.Encode(nullptr);
-  Check(av_write_trailer(encoder.format.get()), encoder.path);
-  Check(avio_closep(&encoder.format->pb), encoder.path);
-  Rename(encoder.temporary, encoder.path);
-  encoder.finished = true;
+  encoder.Require(av_write_trailer(encoder.format.get()));
+  avio_flush(encoder.io.get());
+  encoder.Require(encoder.io->error);
+  encoder.output.file.Commit();
 }
 
 std::string VideoEncoder() {
@@ -203,7 +286,11 @@ std::string VideoEncoder() {
          std::to_string(AV_VERSION_MICRO(version));
 }
 
+void CheckVideoName(const std::string& path) { CheckEnding(path, ".mp4", "a video"); }
+void CheckPngName(const std::string& path) { CheckEnding(path, ".png", "a picture"); }
+
 void WritePng(const Image& image, const std::string& path) {
+  CheckPngName(path);
   const AVCodec* const png = avcodec_find_encoder(AV_CODEC_ID_PNG);
   if (png == nullptr) throw InputError(path, "cannot be encoded: this libavcodec has no PNG");
   const AvPtr<AVCodecContext> codec(avcodec_alloc_context3(png));
@@ -224,16 +311,8 @@ void WritePng(const Image& image, const std::string& path) {
   Check(avcodec_send_frame(codec.get(), frame.get()), path);
   Check(avcodec_receive_packet(codec.get(), packet.get()), path);
 
-  const std::string temporary = TemporaryName(path);
-  std::ofstream stream(temporary, std::ios::binary);
-  stream.write(reinterpret_cast<const char*>(packet->data), packet->size);
-  stream.close();
-  if (!stream) {
-    const std::string why = std::strerror(errno);
-    std::remove(temporary.c_str());
-    throw InputError(path, "cannot be written: " + why);
-  }
-  Rename(temporary, path);
+  WriteFile(path,
+            {reinterpret_cast<const char*>(packet->data), static_cast<std::size_t>(packet->size)});
 }
 
 }  // namespace sidestep::render

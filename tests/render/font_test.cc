@@ -83,6 +83,14 @@ TEST(Font, DrawsEveryPrintableLetterDifferentlyAndOthersAsQuestionMarks) {
   EXPECT_FALSE(pictures.contains(draw(" ")));
   EXPECT_EQ(draw("\x07"), draw("?"));
   EXPECT_EQ(draw("\xe9"), draw("?"));
+  EXPECT_EQ(draw("\xE2\x82\xAC"), draw("?")) << "one character, one mark";
+  EXPECT_EQ(font.Width("caf\xC3\xA9", 30), font.Width("caf?", 30));
+}
+
+TEST(Font, KnowsWhichTextsItShowsWhole) {
+  EXPECT_TRUE(Font::HasAll("Execute and update ~ 1"));
+  EXPECT_FALSE(Font::HasAll("caf\xC3\xA9"));
+  EXPECT_FALSE(Font::HasAll("caf\xE9"));
 }
 
 }  // namespace

@@ -138,9 +138,21 @@ TEST_F(VideoFile, IsRefusedInOneLineWhereItCannotBeMade) {
   EXPECT_EQ(refusal(Path("a.mp4"), 320, 0, 25),
             "--size: 320x0: width and height must be even and positive");
   EXPECT_EQ(refusal(Path("a.mp4"), 320, 180, 0), "--fps: must be 1 to 240, is 0");
+  EXPECT_EQ(refusal(Path("a.avi"), 320, 180, 25),
+            Path("a.avi") + ": a video needs a name that ends in .mp4");
   EXPECT_EQ(refusal(Path("absent/a.mp4"), 320, 180, 25),
             Path("absent/a.mp4") + ": cannot be written: No such file or directory");
   EXPECT_EQ(NumFiles(), 0);
+}
+
+TEST_F(VideoFile, ForWhichThereIsNoRoomIsRefusedWithItsReason) {
+  std::filesystem::create_symlink("/dev/full", Path("full.mp4"));
+  try {
+    WriteTestVideo(Path("full.mp4"));
+    ADD_FAILURE() << "was written";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(), Path("full.mp4") + ": cannot be written: No space left on device");
+  }
 }
 
 TEST_F(VideoFile, PngHoldsEveryPixelExactly) {
@@ -152,6 +164,7 @@ TEST_F(VideoFile, PngHoldsEveryPixelExactly) {
   const std::string pixels = Decode(Path("a.png"));
   EXPECT_EQ(pixels, std::string(reinterpret_cast<const char*>(image.row(0)), 321 * 181 * 3));
   EXPECT_THROW(WritePng(image, Path("absent/a.png")), InputError);
+  EXPECT_THROW(WritePng(image, Path("a.jpg")), InputError);
   EXPECT_EQ(NumFiles(), 2);
 }
 
