@@ -1,7 +1,8 @@
 #include "sidestep/bench/resolve.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
-#include <cstdio>
 
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/shape.h"
@@ -40,11 +41,9 @@ class TaskChecker {
     for (int i = 0; i < robot_.num_joints(); ++i) {
       const robot::JointLimits& limits = robot_.limits()[static_cast<std::size_t>(i)];
       if (q(i) < limits.q_min || q(i) > limits.q_max) {
-        char text[160];
-        std::snprintf(text, sizeof text, "%s = %.4f rad is outside its limits [%.4f, %.4f]",
-                      robot_.joint_names()[static_cast<std::size_t>(i)].c_str(), q(i), limits.q_min,
-                      limits.q_max);
-        Fail(key, text);
+        Fail(key, fmt::format("{} = {:.4f} rad is outside its limits [{:.4f}, {:.4f}]",
+                              robot_.joint_names()[static_cast<std::size_t>(i)], q(i), limits.q_min,
+                              limits.q_max));
       }
     }
   }
@@ -55,10 +54,8 @@ class TaskChecker {
     for (int pair = 0; pair < links.num_pairs(); ++pair) {
       const planner::LinkGap gap = links.Find(pair, p_WS);
       if (gap.gap_m >= 0) continue;
-      char text[160];
-      std::snprintf(text, sizeof text, "the robot's spheres %d and %d overlap by %.1f mm",
-                    gap.first, gap.second, -1e3 * gap.gap_m);
-      Fail(key, text);
+      Fail(key, fmt::format("the robot's spheres {} and {} overlap by {:.1f} mm", gap.first,
+                            gap.second, -1e3 * gap.gap_m));
     }
   }
 
@@ -73,10 +70,8 @@ class TaskChecker {
       const Eigen::Vector3d p_OS = X_OW * Eigen::Vector3d(spheres.p_WS.col(s));
       const double clearance = SignedDistance(shape, p_OS) - robot_.sphere_radii_m()(s);
       if (clearance < 0) {
-        char text[160];
-        std::snprintf(text, sizeof text, "the robot's sphere %d is %.1f mm inside '%s'", s,
-                      -1e3 * clearance, object.c_str());
-        Fail(key, text);
+        Fail(key, fmt::format("the robot's sphere {} is {:.1f} mm inside '{}'", s, -1e3 * clearance,
+                              object));
       }
     }
   }

@@ -1,21 +1,24 @@
 #include "sidestep/bench/result_file.h"
 
 #include <cmath>
-#include <cstdio>
-#include <fstream>
+#include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
+#include "sidestep/bench/json_text.h"
 #include "sidestep/bench/metrics/registry.h"
 #include "sidestep/bench/statistics.h"
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/text_file.h"
 
 namespace sidestep::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr std::uintmax_t kMaxResultBytes = 1 << 24;
 
 Json NumberOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -64,13 +67,12 @@ std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& s
   }
   json["versions"] = versions;
   json["wall_clock"] = {{"episode_s", result.wall_s}, {"cycle_cpu", StageTable(result.times)}};
-  return json.dump(2) + "\n";
+  return JsonText(json);
 }
 
 ResultSummary ReadResult(const std::string& path) {
-  std::ifstream stream(path);
-  if (!stream) throw InputError(path, "no such file, or it cannot be read");
-  const Json json = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  const std::string text = ReadTextFile(path, kMaxResultBytes);
+  const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!json.is_object() || !json.contains("format") || json["format"] != "sidestep-result-1") {
     throw InputError(path, "is not a result.json of sidestep");
   }
@@ -94,17 +96,6 @@ ResultSummary ReadResult(const std::string& path) {
     throw InputError(path, std::string("is not a whole result: ") + error.what());
   }
   return summary;
-}
-
-void WriteTextFile(const std::string& path, const std::string& text) {
-  const std::string temporary = path + ".part";
-  std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
-  stream << text;
-  stream.close();
-  if (!stream || std::rename(temporary.c_str(), path.c_str()) != 0) {
-    std::remove(temporary.c_str());
-    throw InputError(path, "cannot be written");
-  }
 }
 
 }  // namespace sidestep::bench

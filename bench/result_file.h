@@ -24,8 +24,4 @@ struct ResultSummary {
 /// @throws InputError if the file is missing, not JSON, or not a result.
 ResultSummary ReadResult(const std::string& path);
 
-/// Writes a text file atomically (a temporary beside it, then a rename).
-/// @throws InputError if it cannot be written.
-void WriteTextFile(const std::string& path, const std::string& text);
-
 }  // namespace sidestep::bench

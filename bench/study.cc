@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <exception>
 #include <functional>
 #include <random>
@@ -10,6 +9,8 @@
 
 #include "sidestep/bench/free_path_search.h"
 #include "sidestep/bench/metrics/registry.h"
+#include "sidestep/core/csv.h"
+#include "sidestep/core/number_text.h"
 
 namespace sidestep::bench {
 namespace {
@@ -18,7 +19,7 @@ void CheckFinite(const record::Recording& recording) {
   for (const ControlSample& tick : recording.control) {
     if (!tick.q.allFinite() || !tick.v.allFinite() || !tick.q_command.allFinite() ||
         !tick.torque.allFinite()) {
-      throw std::runtime_error("a number is not finite at " + std::to_string(tick.t.seconds()) +
+      throw std::runtime_error("a number is not finite at " + ShortestText(tick.t.seconds()) +
                                " s");
     }
   }
@@ -42,14 +43,6 @@ struct Tally {
   }
   std::string Text() const { return std::to_string(goal) + "/" + std::to_string(episodes); }
 };
-
-// A field of a CSV file, quoted where it must be.
-std::string Field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
 
 // The row that `run` fills; what goes wrong is a row too.
 StudyRow MakeRow(const std::map<std::string, std::string>& factors,
@@ -104,26 +97,23 @@ void VaryObstacles(scenarios::Scenario& scenario, std::uint64_t seed) {
 }
 
 std::string StudyCsv(const std::vector<StudyRow>& rows) {
-  std::string text;
-  if (rows.empty()) return text;
-  for (const auto& [factor, value] : rows.front().factors) text += Field(factor) + ",";
-  text += "outcome,error";
-  for (const Metric& metric : Metrics()) text += std::string(",") + metric.name;
-  text += "\n";
+  if (rows.empty()) return "";
+  std::vector<std::string> columns;
+  for (const auto& [factor, value] : rows.front().factors) columns.push_back(factor);
+  columns.insert(columns.end(), {"outcome", "error"});
+  for (const Metric& metric : Metrics()) columns.emplace_back(metric.name);
+  CsvWriter csv(columns);
   for (const StudyRow& row : rows) {
-    for (const auto& [factor, value] : row.factors) text += Field(value) + ",";
-    text += row.outcome + "," + Field(row.error);
+    std::vector<std::string> fields;
+    for (const auto& [factor, value] : row.factors) fields.push_back(value);
+    fields.insert(fields.end(), {row.outcome, row.error});
     for (const Metric& metric : Metrics()) {
       const auto found = row.metrics.find(metric.name);
-      char number[32] = "";
-      if (found != row.metrics.end() && !std::isnan(found->second)) {
-        std::snprintf(number, sizeof number, "%.9g", found->second);
-      }
-      text += std::string(",") + number;
+      fields.push_back(found == row.metrics.end() ? "" : CsvNumber(found->second));
     }
-    text += "\n";
+    csv.AddRow(fields);
   }
-  return text;
+  return csv.text();
 }
 
 std::string OutcomeTable(const std::vector<StudyRow>& rows, const std::string& down,

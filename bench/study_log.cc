@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "sidestep/bench/json_text.h"
 #include "sidestep/core/input_error.h"
 
 namespace sidestep::bench {
@@ -43,7 +44,7 @@ StudyLog::StudyLog(const std::string& path, const std::string& study, bool resum
   const bool goes_on = resume && std::filesystem::exists(path);
   if (goes_on) Read(study);
   file_.open(path, goes_on ? std::ios::app : std::ios::trunc);
-  if (!goes_on) file_ << json{{"study", study}}.dump() << std::endl;
+  if (!goes_on) file_ << JsonLine({{"study", study}}) << std::endl;
   if (!file_) throw InputError(path, "cannot be written");
 }
 
@@ -77,7 +78,7 @@ const StudyRow* StudyLog::Find(const std::map<std::string, std::string>& factors
 }
 
 void StudyLog::Append(const StudyRow& row) {
-  file_ << ToJson(row).dump() << std::endl;
+  file_ << JsonLine(ToJson(row)) << std::endl;
   if (!file_) throw InputError(path_, "cannot be written");
 }
 

@@ -1,7 +1,7 @@
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -9,12 +9,14 @@
 
 #include "sidestep/bench/episode.h"
 #include "sidestep/bench/field_audit.h"
-#include "sidestep/bench/result_file.h"
+#include "sidestep/bench/json_text.h"
 #include "sidestep/cli/command.h"
+#include "sidestep/cli/console.h"
 #include "sidestep/cli/heat_slice.h"
 #include "sidestep/cli/number_range.h"
+#include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/wiring.h"
-#include "sidestep/core/input_error.h"
+#include "sidestep/core/atomic_file.h"
 #include "sidestep/render/font.h"
 #include "sidestep/render/gl_context.h"
 #include "sidestep/render/video_writer.h"
@@ -48,28 +50,26 @@ sdf::SdfGrid Difference(const bench::AuditGrids& grids) {
 }
 
 void PrintRows(const std::vector<bench::AuditRow>& rows) {
-  std::printf(
+  Print(
       "                         error, mm                  gradient off by, degrees\n"
       "ahead s  zone      points  median     p99     max    median    p99    max\n");
   for (const bench::AuditRow& row : rows) {
-    std::printf("%7.2f  %-7s %8zu %7.2f %7.2f %7.2f", row.ahead_s, ToString(row.zone).c_str(),
-                row.num_points, 1e3 * row.median_m, 1e3 * row.p99_m, 1e3 * row.max_m);
+    Print("{:7.2f}  {:<7} {:8} {:7.2f} {:7.2f} {:7.2f}", row.ahead_s, ToString(row.zone),
+          row.num_points, 1e3 * row.median_m, 1e3 * row.p99_m, 1e3 * row.max_m);
     if (!std::isnan(row.gradient_median_deg)) {
-      std::printf("   %7.2f %6.2f %6.2f", row.gradient_median_deg, row.gradient_p99_deg,
-                  row.gradient_max_deg);
+      Print("   {:7.2f} {:6.2f} {:6.2f}", row.gradient_median_deg, row.gradient_p99_deg,
+            row.gradient_max_deg);
     }
-    std::printf("\n");
+    Print("\n");
   }
 }
 
 // What the picture shows, in two lines.
 std::vector<std::string> PictureTitle(const scenarios::Scenario& scenario,
                                       const bench::AuditPlace& worst) {
-  char what[128], when[128];
-  std::snprintf(what, sizeof(what), ": |field - truth| at z = %.2f m", worst.p_W.z());
-  std::snprintf(when, sizeof(when), "; made at %.2f s, asked about %.2f s", worst.t_cycle.seconds(),
-                worst.t.seconds());
-  return {scenario.name + what, "knowledge: " + scenario.knowledge + when};
+  return {fmt::format("{}: |field - truth| at z = {:.2f} m", scenario.name, worst.p_W.z()),
+          fmt::format("knowledge: {}; made at {:.2f} s, asked about {:.2f} s", scenario.knowledge,
+                      worst.t_cycle.seconds(), worst.t.seconds())};
 }
 
 std::string Json(const std::vector<bench::AuditRow>& rows, const bench::AuditPlace& worst) {
@@ -90,19 +90,15 @@ std::string Json(const std::vector<bench::AuditRow>& rows, const bench::AuditPla
                    {"p_W", {worst.p_W.x(), worst.p_W.y(), worst.p_W.z()}},
                    {"field_m", worst.field_m},
                    {"truth_m", worst.truth_m}};
-  return json.dump(2) + "\n";
+  return bench::JsonText(json);
 }
 
 int Audit(const AuditOptions& options) {
   const DataPaths paths = FindDataPaths();
   const Problem problem = LoadProblem(options.scenario, options.overrides, paths);
-  const std::string out =
-      options.out.empty() ? "out/" + problem.scenario.name + "/audit" : options.out;
-  std::error_code error;
-  std::filesystem::create_directories(out, error);
-  if (error || !std::filesystem::is_directory(out)) {
-    throw InputError("--out", "'" + out + "' cannot be made a folder");
-  }
+  const std::string out = MakeOutFolder(
+      options.out.empty() ? "out/" + problem.scenario.name + "/audit" : options.out,
+      {"slice.png", "field.nrrd", "truth.nrrd", "difference.nrrd", "occupancy.nrrd", "audit.json"});
 
   bench::FieldAudit audit(problem.scenario, options.ahead_s, options.num_points);
   int num_cycles = 0;
@@ -115,7 +111,7 @@ int Audit(const AuditOptions& options) {
                         });
   bench::RequireWhole(result);
   if (num_cycles == 0) {
-    std::fprintf(stderr, "audit: the episode had no planning cycle: %s\n", result.reason.c_str());
+    PrintError("audit: the episode had no planning cycle: {}\n", result.reason);
     return 1;
   }
 
@@ -131,23 +127,23 @@ int Audit(const AuditOptions& options) {
   sdf::WriteNrrd(Difference(grids), out + "/difference.nrrd");
   sdf::WriteNrrd(TrueOccupancy(grids.truth_W), out + "/occupancy.nrrd");
   const std::string json = Json(rows, worst);
-  bench::WriteTextFile(out + "/audit.json", json);
+  WriteFile(out + "/audit.json", json);
   if (options.json) {
-    std::fputs(json.c_str(), stdout);
+    PrintText(json);
     return 0;
   }
-  std::printf("%d planning cycles, %d points each, knowledge: %s\n", num_cycles, options.num_points,
-              problem.scenario.knowledge.c_str());
+  Print("{} planning cycles, {} points each, knowledge: {}\n", num_cycles, options.num_points,
+        problem.scenario.knowledge);
   PrintRows(rows);
-  std::printf(
-      "most wrong in free space: %.1f mm instead of %.1f mm at (%.3f, %.3f, %.3f) m; field made at "
-      "%.2f s, asked about %.2f s\n",
+  Print(
+      "most wrong in free space: {:.1f} mm instead of {:.1f} mm at ({:.3f}, {:.3f}, {:.3f}) m; "
+      "field made at {:.2f} s, asked about {:.2f} s\n",
       1e3 * worst.field_m, 1e3 * worst.truth_m, worst.p_W.x(), worst.p_W.y(), worst.p_W.z(),
       worst.t_cycle.seconds(), worst.t.seconds());
-  std::printf(
-      "written: %s/{audit.json, slice.png, field.nrrd, truth.nrrd, difference.nrrd, "
-      "occupancy.nrrd}\n",
-      out.c_str());
+  Print(
+      "written: {}/{{audit.json, slice.png, field.nrrd, truth.nrrd, difference.nrrd, "
+      "occupancy.nrrd}}\n",
+      out);
   return 0;
 }
 

@@ -1,22 +1,18 @@
-#include <cmath>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "sidestep/bench/result_file.h"
 #include "sidestep/cli/command.h"
+#include "sidestep/cli/console.h"
+#include "sidestep/core/number_text.h"
 
 namespace sidestep::cli {
 namespace {
 
 std::string Number(const bench::ResultSummary& result, const char* metric, double scale,
                    const char* format) {
-  const double value = result.metrics.at(metric);
-  if (std::isnan(value)) return "-";
-  char text[64];
-  std::snprintf(text, sizeof text, format, scale * value);
-  return text;
+  return FiniteText(format, scale * result.metrics.at(metric));
 }
 
 std::string Verdict(const bench::ResultSummary& result) {
@@ -27,17 +23,16 @@ int Compare(const std::vector<std::string>& folders) {
   std::vector<bench::ResultSummary> results;
   for (const std::string& folder : folders)
     results.push_back(bench::ReadResult(folder + "/result.json"));
-  std::printf("%-20s %-34s %10s %10s %10s %8s %10s %9s\n", "planner knows", "what happened",
-              "contact", "clearance", "goal", "GP cost", "jerk RMS", "cycle");
-  std::printf("%-20s %-34s %10s %10s %10s %8s %10s %9s\n", "", "", "at [s]", "least [mm]",
-              "after [s]", "", "[rad/s^3]", "[ms CPU]");
+  Print("{:<20} {:<34} {:>10} {:>10} {:>10} {:>8} {:>10} {:>9}\n", "planner knows", "what happened",
+        "contact", "clearance", "goal", "GP cost", "jerk RMS", "cycle");
+  Print("{:<20} {:<34} {:>10} {:>10} {:>10} {:>8} {:>10} {:>9}\n", "", "", "at [s]", "least [mm]",
+        "after [s]", "", "[rad/s^3]", "[ms CPU]");
   for (const bench::ResultSummary& result : results) {
-    std::printf("%-20s %-34s %10s %10s %10s %8s %10s %9.1f\n", result.knowledge.c_str(),
-                Verdict(result).c_str(), Number(result, "first_contact_s", 1, "%.2f").c_str(),
-                Number(result, "min_clearance_m", 1e3, "%.0f").c_str(),
-                Number(result, "time_to_goal_s", 1, "%.2f").c_str(),
-                Number(result, "gp_cost", 1, "%.1f").c_str(),
-                Number(result, "jerk_rms", 1, "%.0f").c_str(), result.cycle_p50_ms);
+    Print("{:<20} {:<34} {:>10} {:>10} {:>10} {:>8} {:>10} {:9.1f}\n", result.knowledge,
+          Verdict(result), Number(result, "first_contact_s", 1, "{:.2f}"),
+          Number(result, "min_clearance_m", 1e3, "{:.0f}"),
+          Number(result, "time_to_goal_s", 1, "{:.2f}"), Number(result, "gp_cost", 1, "{:.1f}"),
+          Number(result, "jerk_rms", 1, "{:.0f}"), result.cycle_p50_ms);
   }
   return 0;
 }

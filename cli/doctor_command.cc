@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <string>
@@ -6,6 +5,7 @@
 
 #include "sidestep/bench/report/gnuplot.h"
 #include "sidestep/cli/command.h"
+#include "sidestep/cli/console.h"
 #include "sidestep/cli/data_paths.h"
 #include "sidestep/cli/versions.h"
 #include "sidestep/render/gl_context.h"
@@ -19,20 +19,20 @@ namespace {
 // Prints one finding a line; a remedy belongs on the same line, so that it can be grepped.
 class Report {
  public:
-  void Good(const std::string& what, const std::string& detail) { Print("ok", what, detail); }
+  void Good(const std::string& what, const std::string& detail) { Tell("ok", what, detail); }
   void Bad(const std::string& what, const std::string& detail, const std::string& remedy) {
-    Print("MISSING", what, detail + "; remedy: " + remedy);
+    Tell("MISSING", what, detail + "; remedy: " + remedy);
     ++num_bad_;
   }
   /// Something that can be done without.
   void Absent(const std::string& what, const std::string& detail, const std::string& remedy) {
-    Print("absent", what, detail + "; remedy: " + remedy);
+    Tell("absent", what, detail + "; remedy: " + remedy);
   }
   int num_bad() const { return num_bad_; }
 
  private:
-  static void Print(const char* verdict, const std::string& what, const std::string& detail) {
-    std::printf("%-8s %-12s %s\n", verdict, what.c_str(), detail.c_str());
+  static void Tell(const char* verdict, const std::string& what, const std::string& detail) {
+    Print("{:<8} {:<12} {}\n", verdict, what, detail);
   }
   int num_bad_ = 0;
 };

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <utility>
@@ -8,8 +7,10 @@
 
 #include "sidestep/bench/sensor_watch.h"
 #include "sidestep/cli/command.h"
+#include "sidestep/cli/console.h"
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/wiring.h"
+#include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/render/image.h"
 #include "sidestep/render/video_writer.h"
@@ -102,6 +103,8 @@ render::Image Slice(const Belief& belief, const GridSpec& grid, EpisodeTime t, d
 }
 
 int DrawField(FieldOptions options) {
+  render::CheckPngName(options.out);
+  CheckCanWrite(options.out);
   options.overrides.settings = ParseSettings(options.settings);
   Scene scene = LoadScene(options.scenario, options.overrides, FindDataPaths());
   const GridSpec grid = scene.scenario.grid;
@@ -118,7 +121,7 @@ int DrawField(FieldOptions options) {
     image.Paste(slices[i], width * static_cast<int>(i), 0);
   }
   render::WritePng(image, options.out);
-  std::printf("written  %s\n", options.out.c_str());
+  Print("written  {}\n", options.out);
   return 0;
 }
 

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
+
+#include "sidestep/core/number_text.h"
 
 namespace sidestep::cli {
 namespace {
@@ -82,9 +83,7 @@ void DrawLegend(render::Image& image, int y, double largest_m, const render::Fon
     const double u = static_cast<double>(n) / std::max(1, length - 1);
     image.Fill({static_cast<int>(text_x) + n, y + (kLine - kBar) / 2, 1, kBar}, Heat(u));
   }
-  char largest[64];
-  std::snprintf(largest, sizeof(largest), "%.1f mm", 1e3 * largest_m);
-  font.Draw(image, text_x + length + 8, y, kLine, kInk, largest);
+  font.Draw(image, text_x + length + 8, y, kLine, kInk, FiniteText("{:.1f} mm", 1e3 * largest_m));
 
   struct Sign {
     const char* text;

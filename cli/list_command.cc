@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <map>
 #include <memory>
 #include <string>
@@ -6,6 +5,7 @@
 
 #include "sidestep/bench/metrics/registry.h"
 #include "sidestep/cli/command.h"
+#include "sidestep/cli/console.h"
 #include "sidestep/cli/data_paths.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/planner/registry.h"
@@ -79,13 +79,13 @@ int ListAll() {
     notes[metric.name] = metric.meaning + std::string(" [") + metric.unit + "]";
   }
   for (const Kind& kind : kKinds) {
-    std::printf("%s\n", kind.title);
+    Print("{}\n", kind.title);
     for (const std::string& name : kind.names(paths)) {
       const auto note = notes.find(name);
       if (note == notes.end()) {
-        std::printf("  %s\n", name.c_str());
+        Print("  {}\n", name);
       } else {
-        std::printf("  %-24s %s\n", name.c_str(), note->second.c_str());
+        Print("  {:<24} {}\n", name, note->second);
       }
     }
   }
@@ -97,7 +97,7 @@ int ListNames(const std::string& kind_name) {
   for (const Kind& kind : kKinds) {
     known += (known.empty() ? "" : ", ") + std::string(kind.title);
     if (kind_name != kind.title) continue;
-    for (const std::string& name : kind.names(FindDataPaths())) std::printf("%s\n", name.c_str());
+    for (const std::string& name : kind.names(FindDataPaths())) Print("{}\n", name);
     return 0;
   }
   throw InputError("KIND", "must be one of " + known + ", is '" + kind_name + "'");

@@ -1,9 +1,12 @@
-#include <cstdio>
+#include <algorithm>
+#include <csignal>
 #include <exception>
+#include <sstream>
 #include <string>
 
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/command_tree.h"
+#include "sidestep/cli/console.h"
 #include "sidestep/cli/versions.h"
 #include "sidestep/core/input_error.h"
 
@@ -12,12 +15,9 @@ namespace {
 constexpr int kDone = 0, kFailed = 1, kBadInput = 2;
 
 // One line, whatever the message holds.
-int Complain(const std::string& message, int exit_code) {
-  std::string line = message;
-  for (char& c : line) {
-    if (c == '\n') c = ' ';
-  }
-  std::fprintf(stderr, "%s\n", line.c_str());
+int Complain(std::string message, int exit_code) {
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  sidestep::PrintErrorText(message + "\n");
   return exit_code;
 }
 
@@ -39,7 +39,8 @@ int Run(int argc, char** argv) {
   line.app.require_subcommand(1);
   line.app.footer(
       "Exit codes: 0 done, whatever the outcome of the run; 1 a gate failed or a run could not be\n"
-      "completed (what there is of it is written); 2 usage or bad input.\n"
+      "completed (what there is of it is written); 2 usage, bad input, or results that could not be\n"
+      "written.\n"
       "`sidestep COMMAND --help` tells more.\n"
       "Environment: SIDESTEP_DATA_DIR is a folder with models/ and scenarios/, used instead of "
       "the\n"
@@ -58,7 +59,9 @@ int Run(int argc, char** argv) {
   try {
     line.app.parse(argc, argv);
   } catch (const CLI::Success& help) {
-    line.app.exit(help);
+    std::ostringstream text;
+    line.app.exit(help, text, text);
+    sidestep::PrintText(text.str());
     return kDone;
   } catch (const CLI::ParseError& error) {
     return Complain("sidestep: " + std::string(error.what()) + " (see sidestep --help)", kBadInput);
@@ -69,8 +72,12 @@ int Run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // Who stops reading what is printed does not stop the work whose results go into files.
+  std::signal(SIGPIPE, SIG_IGN);
   try {
-    return Run(argc, argv);
+    const int exit_code = Run(argc, argv);
+    sidestep::FinishOutput();
+    return exit_code;
   } catch (const sidestep::InputError& error) {
     return Complain(error.what(), kBadInput);
   } catch (const std::exception& error) {

@@ -1,26 +1,21 @@
-#include <filesystem>
 #include <memory>
 
-#include "sidestep/bench/result_file.h"
 #include "sidestep/cli/bash_completion.h"
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/man_page.h"
+#include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/versions.h"
-#include "sidestep/core/input_error.h"
+#include "sidestep/core/atomic_file.h"
 
 namespace sidestep::cli {
 namespace {
 
 int WriteManual(const CLI::App& program, const std::string& out) {
-  std::error_code error;
-  for (const char* const folder : {"/man1", "/completions"}) {
-    std::filesystem::create_directories(out + folder, error);
-    if (error) throw InputError("--out", "'" + out + "' cannot be made a folder");
-  }
+  for (const char* const folder : {"/man1", "/completions"}) MakeOutFolder(out + folder, {});
   for (const auto& [file, text] : ManPages(program, VersionNumber())) {
-    bench::WriteTextFile(out + "/man1/" + file, text);
+    WriteFile(out + "/man1/" + file, text);
   }
-  bench::WriteTextFile(out + "/completions/" + program.get_name(), BashCompletion(program));
+  WriteFile(out + "/completions/" + program.get_name(), BashCompletion(program));
   return 0;
 }
 

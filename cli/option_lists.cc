@@ -1,8 +1,9 @@
 #include "sidestep/cli/option_lists.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <sstream>
 #include <stdexcept>
 
@@ -59,9 +60,7 @@ std::vector<double> ParseSpeeds(const std::string& option, const std::string& te
   std::vector<double> speeds;
   const int count = static_cast<int>(std::floor((last - first) / step + 1e-6)) + 1;
   for (int i = 0; i < count; ++i) {
-    char decimal[64];
-    std::snprintf(decimal, sizeof decimal, "%.9f", first + i * step);
-    speeds.push_back(std::stod(decimal));
+    speeds.push_back(std::stod(fmt::format("{:.9f}", first + i * step)));
   }
   return speeds;
 }

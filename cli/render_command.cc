@@ -9,12 +9,15 @@
 #include <vector>
 
 #include "sidestep/cli/command.h"
+#include "sidestep/cli/console.h"
 #include "sidestep/cli/number_range.h"
+#include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/record/recording_file.h"
 #include "sidestep/render/comparison.h"
 #include "sidestep/render/gl_context.h"
 #include "sidestep/render/video.h"
+#include "sidestep/render/video_writer.h"
 
 namespace sidestep::cli {
 namespace {
@@ -54,8 +57,21 @@ void ParseSize(const std::string& text, render::PictureOptions* picture) {
       picture->height > kMaxPixels) {
     throw InputError("--size", "must be WIDTHxHEIGHT in pixels, each 2 to 7680, is '" + text + "'");
   }
-  if (picture->width % 2 != 0 || picture->height % 2 != 0) {
-    throw InputError("--size", "width and height must be even, is '" + text + "'");
+}
+
+// Before anything is drawn.
+void CheckOutputs(const RenderOptions& options, const render::PictureOptions& picture) {
+  if (!options.video.empty()) {
+    render::CheckVideoName(options.video);
+    if (picture.width % 2 != 0 || picture.height % 2 != 0) {
+      throw InputError("--size",
+                       "a video's width and height must be even, is '" + options.size + "'");
+    }
+    CheckCanWrite(options.video);
+  }
+  if (!options.still.empty()) {
+    render::CheckPngName(options.still);
+    CheckCanWrite(options.still);
   }
 }
 
@@ -63,10 +79,10 @@ bool ShowProgress(int done, int total) {
   if (isatty(STDERR_FILENO) != 0) {
     constexpr int kWidth = 40;
     const int filled = kWidth * done / total;
-    std::fprintf(stderr, "\r[%s%s] %d of %d frames%s", std::string(filled, '#').c_str(),
-                 std::string(kWidth - filled, '.').c_str(), done, total, done == total ? "\n" : "");
+    PrintError("\r[{}{}] {} of {} frames{}", std::string(filled, '#'),
+               std::string(kWidth - filled, '.'), done, total, done == total ? "\n" : "");
   } else if (done % std::max(1, total / 4) == 0 && done < total) {
-    std::fprintf(stderr, "rendered %d of %d frames\n", done, total);
+    PrintError("rendered {} of {} frames\n", done, total);
   }
   return interrupted == 0;
 }
@@ -84,6 +100,7 @@ int Render(const RenderOptions& options) {
   if (options.at_s && options.still.empty()) throw InputError("--at", "needs --still");
   render::PictureOptions picture;
   ParseSize(options.size, &picture);
+  CheckOutputs(options, picture);
   picture.camera = options.camera;
   picture.titles = options.titles;
   picture.playback_speed = options.playback_speed;
@@ -91,10 +108,13 @@ int Render(const RenderOptions& options) {
   const std::vector<render::NamedRecording> traces = ReadTraces(options.traces);
   const render::GlContext gl;
   render::Comparison comparison(gl, traces, picture);
+  for (const std::string& name : comparison.names_not_shown()) {
+    PrintError("'{}': pictures have no letters but ASCII's; others show as '?'\n", name);
+  }
   if (!options.still.empty()) {
     render::RenderStill(comparison, options.still,
                         options.at_s ? std::optional(EpisodeTime(*options.at_s)) : std::nullopt);
-    std::printf("written  %s\n", options.still.c_str());
+    Print("written  {}\n", options.still);
   }
   if (options.video.empty()) return 0;
 
@@ -103,12 +123,12 @@ int Render(const RenderOptions& options) {
   const int frames = render::RenderVideo(
       comparison, options.video, {options.frames_per_second, options.playback_speed}, ShowProgress);
   if (interrupted != 0) {
-    std::fprintf(stderr, "\nstopped; %s was not written\n", options.video.c_str());
+    PrintError("\nstopped; {} was not written\n", options.video);
     return 1;
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
-  std::printf("written  %s: %d frames, %.1f frames/s, %s\n", options.video.c_str(), frames,
-              frames / elapsed.count(), gl.renderer().c_str());
+  Print("written  {}: {} frames, {:.1f} frames/s, {}\n", options.video, frames,
+        frames / elapsed.count(), gl.renderer());
   return 0;
 }
 
@@ -124,9 +144,11 @@ void AddRenderCommand(CommandLine& line) {
   render->add_option("--still", options->still, "A picture to write, FILE.png");
   render
       ->add_option("--at", options->at_s,
-                   "The still's moment [s] [the first contact, else the least clearance]")
+                   "The still's moment [s], not after the end [the first contact, else the least "
+                   "clearance]")
       ->check(NumberFrom(0.0, 1e6));
-  render->add_option("--size", options->size, "WIDTHxHEIGHT of the whole picture [1280x720]");
+  render->add_option("--size", options->size,
+                     "WIDTHxHEIGHT of the whole picture, even for a video [1280x720]");
   render->add_option("--fps", options->frames_per_second, "Frames a second of video [30]")
       ->check(NumberFrom(1, 240));
   render->add_option("--speed", options->playback_speed, "Playback speed, 0.5 is half [1]")

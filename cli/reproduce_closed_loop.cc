@@ -1,16 +1,16 @@
-#include <cstdio>
 #include <memory>
 #include <string>
 
 #include "sidestep/bench/reproduce/closed_loop.h"
 #include "sidestep/bench/reproduce/closed_loop_report.h"
 #include "sidestep/bench/reproduce/published_columns.h"
-#include "sidestep/bench/result_file.h"
+#include "sidestep/cli/console.h"
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/reproduce.h"
 #include "sidestep/cli/versions.h"
 #include "sidestep/cli/wiring.h"
+#include "sidestep/core/atomic_file.h"
 #include "sidestep/record/recording_file.h"
 
 namespace sidestep::cli {
@@ -32,11 +32,13 @@ int Run(const ClosedLoopCommand& command) {
   }
   const DataPaths paths = FindDataPaths();
   const Problem problem = LoadProblem("hsr_walkway", {}, paths);
-  const std::string out = MakeOutFolder(command.out);
+  const std::string out =
+      MakeOutFolder(command.out, {"execute_and_update.h5", "prediction.h5", "rates.csv",
+                                  "whole_run.csv", "joints.gp", "rates.gp", "index.html"});
 
   bench::ClosedLoopStudy study = bench::RunClosedLoopStudy(
       problem.scenario, problem.robot, SimulatedWorlds(paths), command.options,
-      [](const std::string& part) { std::fprintf(stderr, "%s\n", part.c_str()); });
+      [](const std::string& part) { PrintError("{}\n", part); });
   for (bench::EpisodeResult* const result : {&study.update, &study.prediction}) {
     for (const auto& [part, version] : Versions()) {
       result->recording.header["version." + part] = version;
@@ -45,16 +47,15 @@ int Run(const ClosedLoopCommand& command) {
                            out + "/" + result->recording.header.at("knowledge") + ".h5");
   }
   const bench::CsvTable rates = bench::MakeRatesTable(study, published);
-  bench::WriteTextFile(out + "/rates.csv", rates.ToText());
-  bench::WriteTextFile(out + "/whole_run.csv", bench::MakeWholeRunTable(study.whole_run).ToText());
-  std::printf("%s\nwritten: %s/rates.csv, whole_run.csv, execute_and_update.h5, prediction.h5\n",
-              bench::DescribeClosedLoop(study, published).c_str(), out.c_str());
+  WriteFile(out + "/rates.csv", rates.ToText());
+  WriteFile(out + "/whole_run.csv", bench::MakeWholeRunTable(study.whole_run).ToText());
+  Print("{}\nwritten: {}/rates.csv, whole_run.csv, execute_and_update.h5, prediction.h5\n",
+        bench::DescribeClosedLoop(study, published), out);
   const std::string joints = DrawInto(out, "joints", bench::MakeJointsFigure(study));
   const std::string rates_svg = DrawInto(out, "rates", bench::MakeRatesFigure(rates));
-  bench::WriteTextFile(
-      out + "/index.html",
-      bench::MakeClosedLoopPage(command.options, study, published, joints, rates_svg));
-  std::printf("written: %s/index.html\n", out.c_str());
+  WriteFile(out + "/index.html",
+            bench::MakeClosedLoopPage(command.options, study, published, joints, rates_svg));
+  Print("written: {}/index.html\n", out);
   return 0;
 }
 

@@ -1,8 +1,8 @@
-#include <cstdio>
 #include <string>
 
 #include "sidestep/bench/report/gnuplot.h"
 #include "sidestep/cli/command.h"
+#include "sidestep/cli/console.h"
 #include "sidestep/cli/reproduce.h"
 #include "sidestep/core/input_error.h"
 
@@ -12,11 +12,11 @@ std::string DrawInto(const std::string& folder, const std::string& name,
                      const bench::Figure& figure) {
   const std::string stem = folder + "/" + name;
   if (!bench::DrawFigure(figure, stem)) {
-    std::printf("not drawn: %s.svg, %s.png: gnuplot is missing or failed (%s)\n", stem.c_str(),
-                stem.c_str(), bench::kGnuplotRemedy);
+    Print("not drawn: {}.svg, {}.png: gnuplot is missing or failed ({})\n", stem, stem,
+          bench::kGnuplotRemedy);
     return "";
   }
-  std::printf("written: %s.svg, %s.png\n", stem.c_str(), stem.c_str());
+  Print("written: {}.svg, {}.png\n", stem, stem);
   return stem + ".svg";
 }
 

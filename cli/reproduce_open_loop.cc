@@ -1,7 +1,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -16,12 +15,13 @@
 #include "sidestep/bench/reproduce/open_loop_study.h"
 #include "sidestep/bench/reproduce/published_columns.h"
 #include "sidestep/bench/reproduce/published_table.h"
-#include "sidestep/bench/result_file.h"
+#include "sidestep/cli/console.h"
 #include "sidestep/cli/data_paths.h"
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/option_lists.h"
 #include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/reproduce.h"
+#include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/sdf/prediction/registry.h"
 
@@ -67,28 +67,27 @@ bench::OpenLoopStudyOptions MakeStudyOptions(const OpenLoopCommand& command, int
 // One line that is rewritten on a terminal; elsewhere a line at every tenth of the work.
 void ShowProgress(int done, int all) {
   if (isatty(STDERR_FILENO) != 0) {
-    std::fprintf(stderr, "\r%d of %d rows%s", done, all, done == all ? "\n" : "");
+    PrintError("\r{} of {} rows{}", done, all, done == all ? "\n" : "");
   } else if (done * 10 / all != (done - 1) * 10 / all) {
-    std::fprintf(stderr, "%d of %d rows\n", done, all);
+    PrintError("{} of {} rows\n", done, all);
   }
 }
 
 void PrintVerdicts(const bench::OpenLoopStudy& study) {
-  std::printf("%-20s %16s %16s %16s %14s\n", "planner knows", "collision-free", "truly free",
-              "truly free", "mean GP cost");
-  std::printf("%-20s %16s %16s %16s\n", "", "as published", "at the states", "all along");
+  Print("{:<20} {:>16} {:>16} {:>16} {:>14}\n", "planner knows", "collision-free", "truly free",
+        "truly free", "mean GP cost");
+  Print("{:<20} {:>16} {:>16} {:>16}\n", "", "as published", "at the states", "all along");
   for (const bench::VerdictCounts& counts : bench::CountVerdicts(study)) {
-    std::printf("%-20s %8d of %4d %16d %16d %14.4f\n", ToString(counts.knowledge).c_str(),
-                counts.free, counts.num_rows, counts.truly_free_states, counts.truly_free,
-                counts.mean_gp_cost);
+    Print("{:<20} {:8} of {:4} {:16} {:16} {:14.4f}\n", ToString(counts.knowledge), counts.free,
+          counts.num_rows, counts.truly_free_states, counts.truly_free, counts.mean_gp_cost);
   }
-  std::printf(
+  Print(
       "(truly free: of the collision-free, those whose spheres clear the exact boxes, which stand\n"
       "where they were meant to and move between the states)\n");
   if (!study.ignored_spheres.empty()) {
     std::string spheres;
     for (const int s : study.ignored_spheres) spheres += " " + std::to_string(s);
-    std::printf("ignored, for they overlap what the robot stands on: spheres%s\n", spheres.c_str());
+    Print("ignored, for they overlap what the robot stands on: spheres{}\n", spheres);
   }
 }
 
@@ -102,12 +101,13 @@ int Run(const std::string& name, const OpenLoopCommand& command) {
     published_table =
         bench::CsvTable::Read(command.published, {bench::kPairColumn, bench::kSpeedColumn});
   }
-  const std::string out = MakeOutFolder(command.out.empty() ? "out/" + name : command.out);
+  const std::string out = MakeOutFolder(command.out.empty() ? "out/" + name : command.out,
+                                        {"rows.csv", "statistics.json", "figure.gp", "index.html"});
 
   const bench::OpenLoopStudy study =
       bench::RunOpenLoopStudy(experiment, FindDataPaths().models, options, ShowProgress);
   const bench::CsvTable table = bench::MakeOpenLoopTable(study);
-  bench::WriteTextFile(out + "/rows.csv", table.ToText());
+  WriteFile(out + "/rows.csv", table.ToText());
   const std::vector<bench::MatchedOutcomes> outcomes = bench::ReadOutcomes(table);
   std::optional<bench::PublishedComparison> published;
   if (published_table) {
@@ -120,28 +120,27 @@ int Run(const std::string& name, const OpenLoopCommand& command) {
     if (!bench::CanFilter(outcomes, filter)) continue;
     statistics.push_back(bench::ComputeOpenLoopStatistics(outcomes, filter, experiment));
   }
-  bench::WriteTextFile(out + "/statistics.json", bench::ToJson(statistics));
+  WriteFile(out + "/statistics.json", bench::ToJson(statistics));
 
   PrintVerdicts(study);
   for (const bench::OpenLoopStatistics& filtered : statistics) {
-    std::printf("\n%s", bench::Describe(filtered).c_str());
+    Print("\n{}", bench::Describe(filtered));
   }
   if (!bench::CanFilter(outcomes, bench::RowFilter::kPublishedExclusions)) {
-    std::printf(
+    Print(
         "\npublished_exclusions: left out, they need --case static,execute_and_update,"
         "full_knowledge\n");
   }
   if (published) {
-    std::printf("\nagainst %s: %s", command.published.c_str(),
-                bench::Describe(published->table).c_str());
+    Print("\nagainst {}: {}", command.published, bench::Describe(published->table));
   }
-  std::printf("\nwritten: %s/rows.csv, %s/statistics.json\n", out.c_str(), out.c_str());
+  Print("\nwritten: {}/rows.csv, {}/statistics.json\n", out, out);
   const std::string svg = DrawInto(
       out, "figure",
       bench::MakeOpenLoopFigure(outcomes, published ? published->outcomes : decltype(outcomes)()));
-  bench::WriteTextFile(out + "/index.html", bench::MakeOpenLoopPage(experiment, options, study,
-                                                                    published, statistics, svg));
-  std::printf("written: %s/index.html\n", out.c_str());
+  WriteFile(out + "/index.html",
+            bench::MakeOpenLoopPage(experiment, options, study, published, statistics, svg));
+  Print("written: {}/index.html\n", out);
   return !published || published->table.AllCountsAgree() ? 0 : 1;
 }
 

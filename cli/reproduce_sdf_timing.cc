@@ -1,15 +1,15 @@
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "sidestep/bench/reproduce/published_columns.h"
 #include "sidestep/bench/reproduce/sdf_timing.h"
-#include "sidestep/bench/result_file.h"
+#include "sidestep/cli/console.h"
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/reproduce.h"
+#include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
 
 namespace sidestep::cli {
@@ -34,20 +34,16 @@ int Run(const SdfTimingCommand& command) {
   std::optional<bench::CsvTable> published;
   if (!command.published.empty())
     published = bench::CsvTable::Read(command.published, {bench::kVoxelsColumn});
-  const std::string out = MakeOutFolder(command.out);
+  const std::string out = MakeOutFolder(command.out, {"rows.csv", "figure.gp", "index.html"});
 
   const std::size_t num_sizes = command.options.voxels_per_side.size();
-  const bench::CsvTable table =
-      bench::MakeSdfTimingTable(bench::RunSdfTiming(command.options, [&](int done) {
-        std::fprintf(stderr, "%d of %zu sizes\n", done, num_sizes);
-      }));
-  bench::WriteTextFile(out + "/rows.csv", table.ToText());
-  std::printf("%swritten: %s/rows.csv\n", bench::DescribeSdfTiming(table, published).c_str(),
-              out.c_str());
+  const bench::CsvTable table = bench::MakeSdfTimingTable(bench::RunSdfTiming(
+      command.options, [&](int done) { PrintError("{} of {} sizes\n", done, num_sizes); }));
+  WriteFile(out + "/rows.csv", table.ToText());
+  Print("{}written: {}/rows.csv\n", bench::DescribeSdfTiming(table, published), out);
   const std::string svg = DrawInto(out, "figure", bench::MakeSdfTimingFigure(table, published));
-  bench::WriteTextFile(out + "/index.html",
-                       bench::MakeSdfTimingPage(command.options, table, published, svg));
-  std::printf("written: %s/index.html\n", out.c_str());
+  WriteFile(out + "/index.html", bench::MakeSdfTimingPage(command.options, table, published, svg));
+  Print("written: {}/index.html\n", out);
   return 0;
 }
 

@@ -1,5 +1,3 @@
-#include <cmath>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
@@ -8,10 +6,13 @@
 #include "sidestep/bench/result_file.h"
 #include "sidestep/bench/statistics.h"
 #include "sidestep/cli/command.h"
+#include "sidestep/cli/console.h"
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/versions.h"
 #include "sidestep/cli/wiring.h"
+#include "sidestep/core/atomic_file.h"
+#include "sidestep/core/number_text.h"
 #include "sidestep/record/recording_file.h"
 
 namespace sidestep::cli {
@@ -28,26 +29,23 @@ struct RunOptions {
 void PrintSummary(const bench::EpisodeResult& result, const std::string& out) {
   const auto& metrics = result.recording.metrics;
   const auto number = [&](const char* name, double scale, const char* format) {
-    char text[64];
-    const double value = metrics.at(name);
-    std::snprintf(text, sizeof text, format, scale * value);
-    return std::isnan(value) ? std::string("-") : std::string(text);
+    return FiniteText(format, scale * metrics.at(name));
   };
-  std::printf("outcome          %s\n", ToString(result.outcome).c_str());
-  if (!result.reason.empty()) std::printf("reason           %s\n", result.reason.c_str());
-  std::printf("first contact    %s\n", number("first_contact_s", 1, "%.3f s").c_str());
-  std::printf("least clearance  %s\n", number("min_clearance_m", 1e3, "%.1f mm").c_str());
-  std::printf("time to goal     %s\n", number("time_to_goal_s", 1, "%.3f s").c_str());
-  std::printf("GP cost          %s\n", number("gp_cost", 1, "%.2f").c_str());
-  std::printf("jerk RMS         %s\n", number("jerk_rms", 1, "%.1f rad/s^3").c_str());
+  Print("outcome          {}\n", ToString(result.outcome));
+  if (!result.reason.empty()) Print("reason           {}\n", result.reason);
+  Print("first contact    {}\n", number("first_contact_s", 1, "{:.3f} s"));
+  Print("least clearance  {}\n", number("min_clearance_m", 1e3, "{:.1f} mm"));
+  Print("time to goal     {}\n", number("time_to_goal_s", 1, "{:.3f} s"));
+  Print("GP cost          {}\n", number("gp_cost", 1, "{:.2f}"));
+  Print("jerk RMS         {}\n", number("jerk_rms", 1, "{:.1f} rad/s^3"));
   const std::vector<double>& cycle_s = result.times.at("cycle");
   if (cycle_s.empty()) {
-    std::printf("planning cycle   - (there was none)\n");
+    Print("planning cycle   - (there was none)\n");
   } else {
-    std::printf("planning cycle   %.1f ms CPU (median of %zu)\n", 1e3 * bench::Quantile(cycle_s, 0.5),
-                cycle_s.size());
+    Print("planning cycle   {:.1f} ms CPU (median of {})\n", 1e3 * bench::Quantile(cycle_s, 0.5),
+          cycle_s.size());
   }
-  std::printf("written          %s/result.json, %s/trace.h5\n", out.c_str(), out.c_str());
+  Print("written          {}/result.json, {}/trace.h5\n", out, out);
 }
 
 int Run(const RunOptions& options) {
@@ -55,9 +53,10 @@ int Run(const RunOptions& options) {
   Overrides overrides = options.overrides;
   overrides.settings = ParseSettings(options.settings);
   const Problem problem = LoadProblem(options.scenario, overrides, paths);
-  const std::string out = MakeOutFolder(options.out.empty() ? "out/" + problem.scenario.name + "/" +
-                                                                  problem.scenario.knowledge
-                                                            : options.out);
+  const std::string out = MakeOutFolder(
+      options.out.empty() ? "out/" + problem.scenario.name + "/" + problem.scenario.knowledge
+                          : options.out,
+      {"trace.h5", "result.json"});
   bench::EpisodeResult result =
       bench::RunEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths));
   const auto versions = Versions();
@@ -66,9 +65,9 @@ int Run(const RunOptions& options) {
   }
   record::WriteRecording(result.recording, out + "/trace.h5");
   const std::string json = bench::ResultJson(result, problem.scenario, versions);
-  bench::WriteTextFile(out + "/result.json", json);
+  WriteFile(out + "/result.json", json);
   if (options.json) {
-    std::fputs(json.c_str(), stdout);
+    PrintText(json);
   } else {
     PrintSummary(result, out);
   }

@@ -1,8 +1,8 @@
+#include <fmt/core.h>
+
 #include <algorithm>
-#include <cstdio>
+#include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -10,21 +10,24 @@
 #include <vector>
 
 #include "sidestep/bench/reproduce/parallel.h"
-#include "sidestep/bench/result_file.h"
 #include "sidestep/bench/study.h"
 #include "sidestep/bench/study_log.h"
 #include "sidestep/cli/command.h"
+#include "sidestep/cli/console.h"
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/versions.h"
 #include "sidestep/cli/wiring.h"
+#include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/text_file.h"
 
 namespace sidestep::cli {
 namespace {
 
 // Stands in the place of a kind of knowledge: who knows all and has time.
 constexpr const char* kSearch = "search";
+constexpr std::uintmax_t kMaxScenarioBytes = 1 << 20;
 
 struct StudyOptions {
   std::string scenario;
@@ -56,11 +59,7 @@ std::vector<Factors> Cross(const std::vector<Factors>& cases, const std::string&
   return crossed;
 }
 
-std::string Short(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.12g", value);
-  return text;
-}
+std::string Short(double value) { return fmt::format("{:.12g}", value); }
 
 // What varies: the file's choices that no setting fixes, then what the flags list.
 std::vector<Factors> Cases(const StudyOptions& options, const scenarios::Settings& settings,
@@ -107,12 +106,11 @@ Problem MakeCase(const StudyOptions& options, scenarios::Settings settings, cons
 // What rows must have in common to stand in one table: all that is not a factor of theirs.
 std::string Identity(const StudyOptions& options, const scenarios::Settings& settings,
                      const DataPaths& paths) {
-  std::ifstream file(FindScenario(options.scenario, paths));
   std::string text = VersionText() + "\n";
   for (const auto& [key, value] : settings) text += key + "=" + value + "\n";
   text += "varied: " + std::string(options.episodes > 0 ? "yes" : "no") + "\n";
   text += "guesses: " + std::to_string(options.search) + "\n";
-  return text + std::string(std::istreambuf_iterator<char>(file), {});
+  return text + ReadTextFile(FindScenario(options.scenario, paths), kMaxScenarioBytes);
 }
 
 int Study(const StudyOptions& options) {
@@ -132,7 +130,7 @@ int Study(const StudyOptions& options) {
     const auto seed = one.find("seed");
     if (seed == one.end() || seed->second == "1") MakeCase(options, settings, one, paths);
   }
-  const std::string out = MakeOutFolder(options.out);
+  const std::string out = MakeOutFolder(options.out, {"study.csv", "study.md"});
   if (!options.resume && std::filesystem::exists(out + "/study.jsonl")) {
     throw InputError("--out", "'" + out +
                                   "' holds a study: go on with it by --resume, or choose another "
@@ -161,13 +159,13 @@ int Study(const StudyOptions& options) {
     const std::lock_guard lock(finishing);
     log.Append(rows[n]);
     ++num_done;
-    if (num_done % 50 == 0) std::fprintf(stderr, "%zu of %zu\n", num_done, cases.size());
+    if (num_done % 50 == 0) PrintError("{} of {}\n", num_done, cases.size());
   });
 
-  bench::WriteTextFile(out + "/study.csv", bench::StudyCsv(rows));
+  WriteFile(out + "/study.csv", bench::StudyCsv(rows));
   const std::string table = bench::OutcomeTable(rows, options.down, options.across);
-  bench::WriteTextFile(out + "/study.md", table);
-  std::printf("%s\nwritten %s/study.csv, %s/study.md\n", table.c_str(), out.c_str(), out.c_str());
+  WriteFile(out + "/study.md", table);
+  Print("{}\nwritten {}/study.csv, {}/study.md\n", table, out, out);
   const bool all_whole = std::none_of(rows.begin(), rows.end(), [](const bench::StudyRow& row) {
     return row.outcome == "failed" || row.outcome == ToString(bench::Outcome::kAborted);
   });

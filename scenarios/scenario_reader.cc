@@ -7,6 +7,7 @@
 #include <set>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/utf8.h"
 #include "sidestep/core/yaml_reader.h"
 #include "sidestep/scenarios/scenario.h"
 #include "sidestep/scenarios/track_file.h"
@@ -431,8 +432,9 @@ Scenario Read(YamlReader top, const std::string& file, const std::optional<std::
   Scenario scenario;
   Settle(top, settings, scenario);
   scenario.file = file;
-  scenario.name =
-      top.Has("name") ? top.GetString("name") : std::filesystem::path(file).stem().string();
+  // A file's name may hold any bytes; that of a scenario is told in every kind of result.
+  scenario.name = top.Has("name") ? top.GetString("name")
+                                  : EscapeInvalidUtf8(std::filesystem::path(file).stem().string());
   scenario.description = top.GetString("description");
   std::set<std::string> names = {"floor", "self"};  // words of verdicts
   const bool has_robot = HasRobot(top);

@@ -1,17 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <charconv>
 #include <string>
+
+#include "sidestep/core/number_text.h"
 
 namespace sidestep::scenarios {
 
-/// The shortest text that reads back to the same double.
-inline std::string Number(double value) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value);
-  return std::string(text, end.ptr);
-}
+inline std::string Number(double value) { return ShortestText(value); }
 
 /// [1, 2.5, 3]
 inline std::string List(const Eigen::VectorXd& values) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/number_text.h"
 #include "sidestep/sim/contact_room.h"
 
 namespace sidestep::sim {
@@ -85,7 +86,7 @@ void World::MoveObstacles() {
 
 void World::CheckPhysics() const {
   if (const auto warning = MujocoWarning(*data_)) {
-    throw SimulationError("at " + std::to_string(time().seconds()) + " s: MuJoCo: " + *warning);
+    throw SimulationError("at " + ShortestText(time().seconds()) + " s: MuJoCo: " + *warning);
   }
 }
 

@@ -2,14 +2,13 @@
 
 #include <tinyxml2.h>
 
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <optional>
 #include <set>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/number_text.h"
 #include "sidestep/sim/foreign_model.h"
 #include "sidestep/sim/mujoco_model.h"
 #include "sidestep/sim/picture.h"
@@ -20,12 +19,7 @@ namespace {
 using tinyxml2::XMLDocument;
 using tinyxml2::XMLElement;
 
-// The shortest digits that read back to the same number.
-std::string ToText(double value) {
-  std::array<char, 32> text;
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  return std::string(text.data(), end);
-}
+std::string ToText(double value) { return ShortestText(value); }
 
 template <typename Vector>
 std::string ToText(const Eigen::MatrixBase<Vector>& values) {

@@ -19,6 +19,25 @@ const Names kOtherFolders = {"cmake", "docs", "examples", "models", "tests", ".c
 const std::string kPrefix = "sidestep/";  // of the headers of modules
 const std::string kBeforeAPath = " \t\n\"'`=:(,[<";
 
+// What is done in one place only, and where.
+struct Craft {
+  std::string word;   // that gives it away
+  std::string place;  // the files that may, without their endings
+  std::string what;
+};
+const std::vector<Craft> kCrafts = {
+    {"std::ofstream", "core/atomic_file", "writes a file"},
+    {"fopen(", "core/atomic_file", "writes a file"},
+    {"avio_open", "core/atomic_file", "writes a file"},
+    {"snprintf(", "core/number_text", "formats numbers"},
+    {"std::to_chars", "core/number_text", "formats numbers"},
+    {"std::printf(", "cli/console", "prints"},
+    {"std::fprintf(", "cli/console", "prints"},
+    {"std::cout", "cli/console", "prints"},
+};
+// Programs of their own, and the log of a study, which grows as the study goes on.
+const Names kOutsideTheCrafts = {"bench/micro/", "bench/peers/", "bench/study_log."};
+
 bool StartsWith(std::string_view text, std::string_view prefix) {
   return text.substr(0, prefix.size()) == prefix;
 }
@@ -135,6 +154,7 @@ class Checker {
     for (const auto& [path, text] : tree_) {
       if (TopFolder(path) != rule.name || !(EndsWith(path, ".h") || EndsWith(path, ".cc")))
         continue;
+      CheckCrafts(path, text);
       for (const Include& include : Includes(text)) {
         CheckInclude(rule, path, include);
         const std::string used = TopFolder(PathOf(include));
@@ -144,6 +164,20 @@ class Checker {
       }
     }
     CheckLinks(rule, in_headers, in_all);
+  }
+
+  void CheckCrafts(const std::string& path, const std::string& text) {
+    for (const std::string& prefix : kOutsideTheCrafts) {
+      if (StartsWith(path, prefix)) return;
+    }
+    for (const Craft& craft : kCrafts) {
+      const std::size_t at = text.find(craft.word);
+      if (at == std::string::npos || StartsWith(path, craft.place + ".")) continue;
+      const auto end = text.begin() + static_cast<std::ptrdiff_t>(at);
+      const auto line = std::count(text.begin(), end, '\n') + 1;
+      Complain(path, static_cast<int>(line),
+               craft.what + " by " + craft.word + "; " + craft.place + ".h is there for it");
+    }
   }
 
   void CheckInclude(const ModuleRule& rule, const std::string& path, const Include& include) {
@@ -254,8 +288,8 @@ class Checker {
 
 const std::vector<ModuleRule>& ModuleRules() {
   static const std::vector<ModuleRule> rules = {
-      {"core", {}, {"yaml-cpp/", "fmt/"}},
-      {"record", {"core"}, {"hdf5.h"}},
+      {"core", {}, {"yaml-cpp/", "fmt/", "fcntl.h"}},
+      {"record", {"core"}, {"hdf5.h", "fmt/"}},
       {"robot", {"core"}, {}},
       {"sdf", {"core"}, {"hwy/", "tbb/"}},
       {"planner", {"core", "robot", "sdf"}, {"ceres/", "ompl/", "hwy/"}},
@@ -267,7 +301,7 @@ const std::vector<ModuleRule>& ModuleRules() {
        {"franka/", "librealsense2/", "apriltag/", "opencv2/"}},
       {"bench",
        {"core", "record", "robot", "sdf", "planner", "control", "scenarios"},
-       {"nlohmann/", "sqlite3.h", "benchmark/", "hwy/", "itk"}},
+       {"nlohmann/", "sqlite3.h", "benchmark/", "hwy/", "itk", "fmt/"}},
       {"render",
        {"core", "record", "robot", "scenarios", "sim"},
        {"mujoco/", "GL/", "libavcodec/", "libavformat/", "libavutil/", "libswscale/"}},
@@ -277,7 +311,7 @@ const std::vector<ModuleRule>& ModuleRules() {
       {"cli",
        {"core", "record", "robot", "sdf", "planner", "control", "scenarios", "sim", "hardware",
         "bench", "render", "import"},
-       {"CLI/", "nlohmann/", "gnu/libc-version.h"}},
+       {"CLI/", "nlohmann/", "gnu/libc-version.h", "fmt/"}},
   };
   return rules;
 }

@@ -32,6 +32,7 @@ SourceTree ReadSourceTree(const std::filesystem::path& root);
 ///    that its headers include are not private;
 ///  - headers: `#pragma once`;
 ///  - types: none of one name twice in a namespace, and each in that of its module;
+///  - crafts: modules write files, format numbers and print in one place each;
 ///  - the top level: no folder but the modules and a few known ones;
 ///  - paths: no file names a folder that only one machine has.
 std::vector<std::string> FindViolations(const SourceTree& tree,

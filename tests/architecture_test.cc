@@ -108,6 +108,8 @@ INSTANTIATE_TEST_SUITE_P(
         Breach{"HeaderBehindAPrivateLink", "top/CMakeLists.txt",
                "sidestep_module(top SOURCES b.cc PRIVATE_DEPENDS sidestep::base)\n",
                "top/CMakeLists.txt: links base privately, but a header includes it"},
+        Breach{"FileWrittenAnyhow", "base/a.cc", "#include \"base/a.h\"\nstd::ofstream(\"x\");\n",
+               "base/a.cc:2: writes a file by std::ofstream; core/atomic_file.h is there for it"},
         Breach{"UnknownFolder", "utils/x.txt", "",
                "utils: a folder at the top that is no module; see docs/architecture.md"},
         Breach{"MachinePath", "README.md",

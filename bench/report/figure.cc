@@ -1,9 +1,11 @@
 #include "sidestep/bench/report/figure.h"
 
-#include <cmath>
+#include <fmt/core.h>
+
 #include <filesystem>
-#include <sstream>
 #include <stdexcept>
+
+#include "sidestep/core/number_text.h"
 
 namespace sidestep::bench {
 namespace {
@@ -25,35 +27,28 @@ std::string Quoted(const std::string& text) {
   return quoted + "'";
 }
 
-void Write(std::ostream& script, double value) {
-  if (std::isfinite(value)) {
-    script << value;
-  } else {
-    script << kNotFinite;
-  }
-}
+std::string Number(double value) { return FiniteText("{:.10g}", value, kNotFinite); }
 
 std::string BlockName(std::size_t panel, std::size_t series) {
   return "$p" + std::to_string(panel) + "_" + std::to_string(series);
 }
 
-void WriteData(std::ostream& script, const Series& series, const std::string& block) {
+void WriteData(std::string& script, const Series& series, const std::string& block) {
   const bool has_band = !series.low.empty();
   if (series.x.size() != series.y.size() || series.low.size() != series.high.size() ||
       (has_band && series.low.size() != series.x.size())) {
     throw std::invalid_argument("ToGnuplot: a series' columns differ in length");
   }
-  script << block << " << EOD\n";
+  script += block + " << EOD\n";
   for (std::size_t i = 0; i < series.x.size(); ++i) {
-    Write(script, series.x[i]);
+    script += Number(series.x[i]);
     for (const double value : {series.y[i], has_band ? series.low[i] : series.y[i],
                                has_band ? series.high[i] : series.y[i]}) {
-      script << ' ';
-      Write(script, value);
+      script += " " + Number(value);
     }
-    script << '\n';
+    script += "\n";
   }
-  script << "EOD\n";
+  script += "EOD\n";
 }
 
 std::string Look(const Series& series) {
@@ -71,36 +66,35 @@ std::string Look(const Series& series) {
   return "";
 }
 
-void WritePanel(std::ostream& script, const Panel& panel, std::size_t index) {
-  script << "set title " << Quoted(panel.title) << "\nset xlabel " << Quoted(panel.x_label)
-         << " offset 0,0.4\nset ylabel " << Quoted(panel.y_label) << "\n"
-         << (panel.log_y ? "set" : "unset") << " logscale y\n";
+void WritePanel(std::string& script, const Panel& panel, std::size_t index) {
+  script += "set title " + Quoted(panel.title) + "\nset xlabel " + Quoted(panel.x_label) +
+            " offset 0,0.4\nset ylabel " + Quoted(panel.y_label) + "\n" +
+            (panel.log_y ? "set" : "unset") + " logscale y\n";
   if (panel.y_range.size() == 2) {
-    script << "set yrange [" << panel.y_range[0] << ":" << panel.y_range[1] << "]\n";
+    script += "set yrange [" + Number(panel.y_range[0]) + ":" + Number(panel.y_range[1]) + "]\n";
   } else {
-    script << "set yrange [*:*]\n";
+    script += "set yrange [*:*]\n";
   }
   std::string separator = "plot ";
   for (std::size_t i = 0; i < panel.series.size(); ++i) {
     if (panel.series[i].low.empty()) continue;
-    script << separator << BlockName(index, i) << " using 1:3:4 with filledcurves fs transparent "
-           << "solid 0.10 noborder lc rgb '" << Color(panel.series[i].color) << "' notitle";
+    script += separator + BlockName(index, i) + " using 1:3:4 with filledcurves fs transparent " +
+              "solid 0.10 noborder lc rgb '" + Color(panel.series[i].color) + "' notitle";
     separator = ", \\\n     ";
   }
   for (std::size_t i = 0; i < panel.series.size(); ++i) {
     const Series& series = panel.series[i];
-    script << separator << BlockName(index, i) << " using 1:2 " << Look(series) << ' '
-           << (series.title.empty() ? "notitle" : "title " + Quoted(series.title));
+    script += separator + BlockName(index, i) + " using 1:2 " + Look(series) + " " +
+              (series.title.empty() ? "notitle" : "title " + Quoted(series.title));
     separator = ", \\\n     ";
   }
-  script << "\n";
+  script += "\n";
 }
 
 }  // namespace
 
 std::string ToGnuplot(const Figure& figure, const std::string& stem) {
-  std::ostringstream script;
-  script.precision(10);
+  std::string script;
   for (std::size_t p = 0; p < figure.panels.size(); ++p) {
     for (std::size_t s = 0; s < figure.panels[p].series.size(); ++s) {
       WriteData(script, figure.panels[p].series[s], BlockName(p, s));
@@ -109,22 +103,24 @@ std::string ToGnuplot(const Figure& figure, const std::string& stem) {
   const int columns = figure.columns;
   const int rows = (static_cast<int>(figure.panels.size()) + columns - 1) / columns;
   const int width = columns * figure.panel_width_px, height = rows * figure.panel_height_px;
-  script << "set encoding utf8\n"
-            "set grid lc rgb '#dddddd' lt 1 lw 0.5\n"
-            "set border 3 lc rgb '#444444'\n"
-            "set tics nomirror\n"
-            "set format y '%g'\n"
-            "set key outside bottom center horizontal samplen 2 height 1\n";
+  script +=
+      "set encoding utf8\n"
+      "set grid lc rgb '#dddddd' lt 1 lw 0.5\n"
+      "set border 3 lc rgb '#444444'\n"
+      "set tics nomirror\n"
+      "set format y '%g'\n"
+      "set key outside bottom center horizontal samplen 2 height 1\n";
   for (const char* const terminal : {"svg", "png"}) {
-    const bool is_svg = terminal == std::string("svg");
-    script << "set terminal " << (is_svg ? "svg noenhanced" : "pngcairo noenhanced") << " size "
-           << width << "," << height << " background rgb 'white' font 'sans-serif,12'\nset output "
-           << Quoted(std::filesystem::path(stem + "." + terminal).filename().string())
-           << "\nset multiplot layout " << rows << "," << columns << "\n";
+    const std::string device = terminal == std::string("svg") ? "svg" : "pngcairo";
+    const std::string file = std::filesystem::path(stem + "." + terminal).filename().string();
+    script += fmt::format(
+        "set terminal {} noenhanced size {},{} background rgb 'white' font 'sans-serif,12'\n"
+        "set output {}\nset multiplot layout {},{}\n",
+        device, width, height, Quoted(file), rows, columns);
     for (std::size_t p = 0; p < figure.panels.size(); ++p) WritePanel(script, figure.panels[p], p);
-    script << "unset multiplot\nunset output\n";
+    script += "unset multiplot\nunset output\n";
   }
-  return script.str();
+  return script;
 }
 
 }  // namespace sidestep::bench

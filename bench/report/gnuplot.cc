@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "sidestep/bench/result_file.h"
+#include "sidestep/core/atomic_file.h"
 
 namespace sidestep::bench {
 namespace {
@@ -40,7 +40,7 @@ std::string GnuplotVersion() {
 
 bool DrawFigure(const Figure& figure, const std::string& stem) {
   const std::filesystem::path script = std::filesystem::absolute(stem + ".gp");
-  WriteTextFile(script.string(), ToGnuplot(figure, stem));
+  WriteFile(script.string(), ToGnuplot(figure, stem));
   bool succeeded = false;
   Capture("cd " + ShellWord(script.parent_path().string()) + " && gnuplot " +
               ShellWord(script.filename().string()),

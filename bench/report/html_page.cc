@@ -1,11 +1,12 @@
 #include "sidestep/bench/report/html_page.h"
 
-#include <cmath>
-#include <cstdio>
+#include <fmt/core.h>
+
 #include <fstream>
 #include <iterator>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/utf8.h"
 
 namespace sidestep::bench {
 namespace {
@@ -24,9 +25,10 @@ figcaption { color: #555; font-size: 0.9rem; }
 pre { background: #f5f5f5; padding: 0.7rem; overflow-x: auto; font-size: 0.85rem; }
 )";
 
+// What HTML takes as it stands.
 std::string Escape(const std::string& text) {
   std::string escaped;
-  for (const char c : text) {
+  for (const char c : EscapeInvalidUtf8(text)) {
     switch (c) {
       case '&':
         escaped += "&amp;";
@@ -56,9 +58,7 @@ std::string DataUri(const std::string& svg) {
     if (plain.find(c) != std::string::npos) {
       uri += c;
     } else {
-      char code[4];
-      std::snprintf(code, sizeof code, "%%%02X", static_cast<unsigned char>(c));
-      uri += code;
+      uri += fmt::format("%{:02X}", static_cast<unsigned char>(c));
     }
   }
   return uri;
@@ -105,12 +105,5 @@ void HtmlPage::Picture(const std::string& svg_path, const std::string& caption) 
 }
 
 std::string HtmlPage::ToText() const { return text_ + "</html>\n"; }
-
-std::string Format(const char* format, double value) {
-  if (!std::isfinite(value)) return "-";
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 }  // namespace sidestep::bench

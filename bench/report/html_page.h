@@ -6,7 +6,7 @@
 namespace sidestep::bench {
 
 /// A page that stands alone: text, tables and pictures in one file, to be read top to bottom. Texts
-/// are plain: what means something in HTML is escaped.
+/// are plain: what means something in HTML is escaped, and bytes that are not UTF-8.
 class HtmlPage {
  public:
   explicit HtmlPage(const std::string& title);
@@ -25,8 +25,5 @@ class HtmlPage {
  private:
   std::string text_;
 };
-
-/// A number as printf would show it, "-" if it is not finite.
-std::string Format(const char* format, double value);
 
 }  // namespace sidestep::bench

@@ -9,6 +9,7 @@
 #include "sidestep/bench/report/html_page.h"
 #include "sidestep/bench/reproduce/published_columns.h"
 #include "sidestep/bench/statistics.h"
+#include "sidestep/core/number_text.h"
 
 namespace sidestep::bench {
 namespace {
@@ -79,8 +80,9 @@ std::vector<Summary> SummariseWholeRun(const WholeRunTimes& times) {
 }
 
 std::vector<std::string> Cells(const Summary& summary) {
-  return {summary.words, Format("%.3g", summary.least_ms), Format("%.3g", summary.median_ms),
-          Format("%.3g", summary.mean_ms), Format("%.3g", summary.greatest_ms)};
+  return {summary.words, FiniteText("{:.3g}", summary.least_ms),
+          FiniteText("{:.3g}", summary.median_ms), FiniteText("{:.3g}", summary.mean_ms),
+          FiniteText("{:.3g}", summary.greatest_ms)};
 }
 
 Panel JointPanel(const std::string& title, const std::string& y_label,
@@ -116,11 +118,11 @@ std::vector<std::string> RunCells(const char* words, const EpisodeResult& result
   }
   return {words,
           ToString(result.outcome),
-          Format("%.0f mm", 1e3 * metrics.at("min_clearance_m")),
-          Format("%.2f s", metrics.at("time_to_goal_s")),
-          Format("%.1f", metrics.at("gp_cost")),
-          Format("%.2f rad/s", fastest),
-          Format("%.1f ms", 1e3 * Quantile(result.times.at("cycle"), 0.5))};
+          FiniteText("{:.0f} mm", 1e3 * metrics.at("min_clearance_m")),
+          FiniteText("{:.2f} s", metrics.at("time_to_goal_s")),
+          FiniteText("{:.1f}", metrics.at("gp_cost")),
+          FiniteText("{:.2f} rad/s", fastest),
+          FiniteText("{:.1f} ms", 1e3 * Quantile(result.times.at("cycle"), 0.5))};
 }
 
 const std::vector<std::string> kRunHeader = {"planner knows", "outcome", "least clearance",
@@ -149,12 +151,13 @@ std::vector<std::vector<std::string>> RateRows(const CsvTable& rates) {
   std::vector<std::vector<std::string>> rows = {{"voxels a side"}};
   for (const Rate& rate : kRates) rows[0].push_back(rate.words);
   for (std::size_t row = 0; row < rates.num_rows(); ++row) {
-    rows.push_back({Format("%.0f", rates.At(row, 0).value())});
+    rows.push_back({FiniteText("{:.0f}", rates.At(row, 0).value())});
     for (const Rate& rate : kRates) {
-      std::string cell = Format("%.3g Hz", rates.At(row, rates.Find(rate.column).value()).value());
+      std::string cell =
+          FiniteText("{:.3g} Hz", rates.At(row, rates.Find(rate.column).value()).value());
       const auto column = rates.Find(rate.published);
       if (column && rates.At(row, *column)) {
-        cell += " (" + Format("%.3g", *rates.At(row, *column)) + ")";
+        cell += " (" + FiniteText("{:.3g}", *rates.At(row, *column)) + ")";
       }
       rows.back().push_back(cell);
     }
@@ -277,7 +280,7 @@ std::string MakeClosedLoopPage(const ClosedLoopOptions& options, const ClosedLoo
       "After M. Finean, W. Merkt, I. Havoutis, \"Predicted Composite Signed-Distance Fields for "
       "Real-Time Motion Planning in Dynamic Environments\", ICAPS 2021. A Panda on one table "
       "reaches for another while an HSR drives through between them at " +
-      Format("%g m/s", options.speed_m_s) +
+      FiniteText("{:g} m/s", options.speed_m_s) +
       ". The loop is this product's own: predictions hold for the right moments, plans take effect "
       "after their latency, and a tracker within the arm's limits follows them.");
   page.Table(kRunHeader, {RunCells("execute and update", study.update),

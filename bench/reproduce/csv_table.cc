@@ -2,31 +2,17 @@
 
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <set>
 #include <stdexcept>
 #include <utility>
 
+#include "sidestep/core/csv.h"
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/utf8.h"
 
 namespace sidestep::bench {
 namespace {
 
-constexpr std::size_t kMaxShown = 40;  // characters of a broken field in a message
-
-std::vector<std::string> Split(std::string line) {
-  if (!line.empty() && line.back() == '\r') line.pop_back();
-  std::vector<std::string> fields(1);
-  for (const char c : line) {
-    if (c == ',') {
-      fields.emplace_back();
-    } else {
-      fields.back() += c;
-    }
-  }
-  return fields;
-}
+constexpr std::size_t kMaxShown = 40;  // bytes of a broken field in a message
 
 std::optional<double> ParseNumber(const std::string& text) {
   double value = 0;
@@ -35,42 +21,22 @@ std::optional<double> ParseNumber(const std::string& text) {
   return value;
 }
 
-std::string Format(double value) {
-  char text[32];
-  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
-  return std::string(text, end);
-}
-
 }  // namespace
 
 CsvTable CsvTable::Read(const std::string& path, const std::vector<std::string>& required) {
-  std::ifstream stream(path);
-  if (!stream || std::filesystem::is_directory(path)) throw InputError(path, "cannot be read");
-  std::string line;
-  if (!std::getline(stream, line) || line.empty()) {
-    throw InputError(path, 1, "", "needs a header of column names");
-  }
-  CsvTable table(Split(line));
-  if (std::set(table.columns_.begin(), table.columns_.end()).size() != table.columns_.size()) {
-    throw InputError(path, 1, "", "a column comes twice");
-  }
+  const CsvFile file = ReadCsv(path);
+  CsvTable table(file.columns);
   for (const std::string& column : required) {
     if (!table.Find(column)) throw InputError(path, 1, "", "has no column '" + column + "'");
   }
-  for (int number = 2; std::getline(stream, line); ++number) {
-    if (line.empty() || line == "\r") continue;
-    const std::vector<std::string> fields = Split(line);
-    if (fields.size() != table.columns_.size()) {
-      throw InputError(path, number, "",
-                       "has " + std::to_string(fields.size()) + " fields, the header " +
-                           std::to_string(table.columns_.size()));
-    }
+  for (const CsvRow& line : file.rows) {
     std::vector<std::optional<double>> row;
-    for (std::size_t c = 0; c < fields.size(); ++c) {
-      row.push_back(ParseNumber(fields[c]));
-      if (!row.back() && !fields[c].empty()) {
-        throw InputError(path, number, table.columns_[c],
-                         "must be a finite number, is '" + fields[c].substr(0, kMaxShown) + "'");
+    for (std::size_t c = 0; c < line.fields.size(); ++c) {
+      const std::string& field = line.fields[c];
+      row.push_back(ParseNumber(field));
+      if (!row.back() && !field.empty()) {
+        throw InputError(path, line.line, table.columns_[c],
+                         "must be a finite number, is '" + Utf8Prefix(field, kMaxShown) + "'");
       }
     }
     table.rows_.push_back(std::move(row));
@@ -79,17 +45,13 @@ CsvTable CsvTable::Read(const std::string& path, const std::vector<std::string>&
 }
 
 std::string CsvTable::ToText() const {
-  std::string text;
-  for (std::size_t c = 0; c < columns_.size(); ++c) text += (c == 0 ? "" : ",") + columns_[c];
-  text += '\n';
+  CsvWriter csv(columns_);
   for (const auto& row : rows_) {
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      if (c > 0) text += ',';
-      if (row[c]) text += Format(*row[c]);
-    }
-    text += '\n';
+    std::vector<std::string> fields;
+    for (const std::optional<double>& value : row) fields.push_back(value ? CsvNumber(*value) : "");
+    csv.AddRow(fields);
   }
-  return text;
+  return csv.text();
 }
 
 std::optional<std::size_t> CsvTable::Find(const std::string& column) const {

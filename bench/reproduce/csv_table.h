@@ -11,9 +11,9 @@ class CsvTable {
  public:
   explicit CsvTable(std::vector<std::string> columns) : columns_(std::move(columns)) {}
 
-  /// Numbers only, no quotes; empty lines are skipped.
-  /// @throws InputError FILE:LINE: WHY if it is missing, not text, has no header, a column twice, a
-  /// row of another length, or a field that is neither empty nor a finite number.
+  /// Fields hold numbers or nothing.
+  /// @throws InputError FILE:LINE: WHY as ReadCsv (core/csv.h), and for a field that is neither
+  /// empty nor a finite number.
   /// @param required names columns that it must have. @throws InputError likewise without one.
   static CsvTable Read(const std::string& path, const std::vector<std::string>& required = {});
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sidestep/bench/report/html_page.h"
+#include "sidestep/core/number_text.h"
 
 namespace sidestep::bench {
 namespace {
@@ -20,8 +21,8 @@ std::string Words(sdf::Knowledge knowledge) {
 std::string Of(int part, int all) { return std::to_string(part) + " / " + std::to_string(all); }
 
 std::string Between(const char* format, const Interval& interval, double scale = 1) {
-  return "[" + Format(format, scale * interval.low) + ", " + Format(format, scale * interval.high) +
-         "]";
+  return "[" + FiniteText(format, scale * interval.low) + ", " +
+         FiniteText(format, scale * interval.high) + "]";
 }
 
 struct Curves {
@@ -77,12 +78,13 @@ void AddCurves(Figure& figure, const std::vector<MatchedOutcomes>& rows, bool is
 
 std::string DescribeSetup(const OpenLoopExperiment& experiment,
                           const OpenLoopStudyOptions& options) {
-  std::string text =
-      "sigma_obs " + Format("%g", experiment.sigma_obs) + ", epsilon " +
-      Format("%g m", experiment.epsilon_m) + ", " + std::to_string(experiment.num_interpolated) +
-      " interpolated obstacle costs an interval, " + std::to_string(experiment.speeds_m_s.size()) +
-      " speeds from " + Format("%g", experiment.speeds_m_s.front()) + " to " +
-      Format("%g m/s", experiment.speeds_m_s.back()) + ". ";
+  std::string text = "sigma_obs " + FiniteText("{:g}", experiment.sigma_obs) + ", epsilon " +
+                     FiniteText("{:g} m", experiment.epsilon_m) + ", " +
+                     std::to_string(experiment.num_interpolated) +
+                     " interpolated obstacle costs an interval, " +
+                     std::to_string(experiment.speeds_m_s.size()) + " speeds from " +
+                     FiniteText("{:g}", experiment.speeds_m_s.front()) + " to " +
+                     FiniteText("{:g} m/s", experiment.speeds_m_s.back()) + ". ";
   text += options.once ? "Static and full knowledge are solved once. "
                        : "Each motion is solved as often as it has states, pinning one more state "
                          "each time. ";
@@ -131,8 +133,9 @@ void AddPublished(HtmlPage& page, const TableComparison& comparison) {
   std::vector<std::vector<std::string>> rows;
   for (const ColumnComparison& column : comparison.columns) {
     rows.push_back({column.column, Of(column.agreeing, column.compared),
-                    Format("%.2g", column.largest_relative_difference),
-                    Format("%.6g", column.mean_ours), Format("%.6g", column.mean_published)});
+                    FiniteText("{:.2g}", column.largest_relative_difference),
+                    FiniteText("{:.6g}", column.mean_ours),
+                    FiniteText("{:.6g}", column.mean_published)});
   }
   page.Table({"column", "agree", "largest relative difference", "our mean", "published mean"},
              rows);
@@ -140,8 +143,8 @@ void AddPublished(HtmlPage& page, const TableComparison& comparison) {
   page.Paragraph("Entries that differ:");
   rows.clear();
   for (const EntryDifference& entry : comparison.differences) {
-    rows.push_back({entry.column, std::to_string(entry.pair), Format("%g", entry.speed_m_s),
-                    Format("%.9g", entry.ours), Format("%.9g", entry.published)});
+    rows.push_back({entry.column, std::to_string(entry.pair), FiniteText("{:g}", entry.speed_m_s),
+                    FiniteText("{:.9g}", entry.ours), FiniteText("{:.9g}", entry.published)});
   }
   page.Table({"column", "pair", "m/s", "ours", "published"}, rows);
 }
@@ -157,7 +160,7 @@ void AddVerdicts(HtmlPage& page, const OpenLoopStudy& study) {
   for (const VerdictCounts& counts : CountVerdicts(study)) {
     rows.push_back({Words(counts.knowledge), Of(counts.free, counts.num_rows),
                     std::to_string(counts.truly_free_states), std::to_string(counts.truly_free),
-                    Format("%.0f mm", 1e3 * counts.deepest_m)});
+                    FiniteText("{:.0f} mm", 1e3 * counts.deepest_m)});
   }
   page.Table({"planner knows", "free, as published", "free of the true boxes at the states",
               "and between them", "deepest hit of a row called free"},
@@ -168,8 +171,9 @@ void AddRates(HtmlPage& page, const OpenLoopStatistics& statistics) {
   std::vector<std::vector<std::string>> rows;
   for (const FreeRate& rate : statistics.pooled) {
     rows.push_back({Words(rate.knowledge), Of(rate.num_free, rate.num_rows),
-                    Format("%.1f %%", kPercent * rate.num_free / rate.num_rows),
-                    Between("%.1f", rate.wilson, kPercent), Format("%.2f", rate.mean_gp_cost)});
+                    FiniteText("{:.1f} %", kPercent * rate.num_free / rate.num_rows),
+                    Between("{:.1f}", rate.wilson, kPercent),
+                    FiniteText("{:.2f}", rate.mean_gp_cost)});
   }
   page.Table({"planner knows", "free", "rate", "Wilson 95 %", "mean GP cost"}, rows);
 }
@@ -185,10 +189,10 @@ void AddComparisons(HtmlPage& page, const OpenLoopStatistics& statistics) {
     rows.push_back(
         {Words(c.first) + " minus " + Words(c.second),
          std::to_string(c.only_first_free) + " : " + std::to_string(c.only_second_free),
-         Format("%+.1f", kPercent * c.rate_difference) + " " +
-             Between("%.1f", c.rate_interval, kPercent),
+         FiniteText("{:+.1f}", kPercent * c.rate_difference) + " " +
+             Between("{:.1f}", c.rate_interval, kPercent),
          significant([](const SpeedComparison& s) { return s.mcnemar_p_holm; }),
-         Format("%+.2f", c.median_cost_difference) + " " + Between("%.2f", c.cost_interval),
+         FiniteText("{:+.2f}", c.median_cost_difference) + " " + Between("{:.2f}", c.cost_interval),
          significant([](const SpeedComparison& s) { return s.all.p_holm; }),
          significant([](const SpeedComparison& s) { return s.both_free.p_holm; })});
   }

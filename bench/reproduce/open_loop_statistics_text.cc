@@ -1,9 +1,12 @@
 #include "sidestep/bench/reproduce/open_loop_statistics_text.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
+
+#include "sidestep/bench/json_text.h"
 
 namespace sidestep::bench {
 namespace {
@@ -76,13 +79,6 @@ Json ToJson(const OpenLoopStatistics& statistics) {
   return json;
 }
 
-template <class... Values>
-std::string Print(const char* format, Values... values) {
-  char text[256];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
-
 template <class P>
 int CountSignificant(const KnowledgeComparison& comparison, const P& p_holm) {
   return static_cast<int>(
@@ -95,33 +91,33 @@ int CountSignificant(const KnowledgeComparison& comparison, const P& p_holm) {
 std::string ToJson(const std::vector<OpenLoopStatistics>& statistics) {
   Json json = Json::array();
   for (const OpenLoopStatistics& filtered : statistics) json.push_back(ToJson(filtered));
-  return json.dump(2) + "\n";
+  return JsonText(json);
 }
 
 std::string Describe(const OpenLoopStatistics& statistics) {
-  std::string text = Print("%s: %d rows", ToString(statistics.filter).c_str(), statistics.num_rows);
+  std::string text = fmt::format("{}: {} rows", ToString(statistics.filter), statistics.num_rows);
   if (statistics.excluded_by_speed + statistics.excluded_none_free > 0) {
-    text += Print(" (excluded: %d by speed, %d in which none is free)",
-                  statistics.excluded_by_speed, statistics.excluded_none_free);
+    text += fmt::format(" (excluded: {} by speed, {} in which none is free)",
+                        statistics.excluded_by_speed, statistics.excluded_none_free);
   }
   text += '\n';
   for (const FreeRate& rate : statistics.pooled) {
-    text +=
-        Print("  %-20s free %4d of %4d, %5.1f %% [%.1f, %.1f]\n", ToString(rate.knowledge).c_str(),
-              rate.num_free, rate.num_rows, 100.0 * rate.num_free / rate.num_rows,
-              100 * rate.wilson.low, 100 * rate.wilson.high);
+    text += fmt::format("  {:<20} free {:4} of {:4}, {:5.1f} % [{:.1f}, {:.1f}]\n",
+                        ToString(rate.knowledge), rate.num_free, rate.num_rows,
+                        100.0 * rate.num_free / rate.num_rows, 100 * rate.wilson.low,
+                        100 * rate.wilson.high);
   }
   for (const KnowledgeComparison& c : statistics.comparisons) {
     const int num_speeds = static_cast<int>(c.speeds.size());
-    text += Print("  %s - %s\n", ToString(c.first).c_str(), ToString(c.second).c_str());
-    text += Print("    free    %+8.1f points [%+.1f, %+.1f]; McNemar p < 0.05 at %d of %d speeds\n",
-                  100 * c.rate_difference, 100 * c.rate_interval.low, 100 * c.rate_interval.high,
-                  CountSignificant(c, [](const SpeedComparison& s) { return s.mcnemar_p_holm; }),
-                  num_speeds);
-    text += Print("    GP cost %+8.2f median [%+.2f, %+.2f]; Wilcoxon p < 0.05 at %d of %d\n",
-                  c.median_cost_difference, c.cost_interval.low, c.cost_interval.high,
-                  CountSignificant(c, [](const SpeedComparison& s) { return s.all.p_holm; }),
-                  num_speeds);
+    text += fmt::format("  {} - {}\n", ToString(c.first), ToString(c.second));
+    text += fmt::format(
+        "    free    {:+8.1f} points [{:+.1f}, {:+.1f}]; McNemar p < 0.05 at {} of {} speeds\n",
+        100 * c.rate_difference, 100 * c.rate_interval.low, 100 * c.rate_interval.high,
+        CountSignificant(c, [](const SpeedComparison& s) { return s.mcnemar_p_holm; }), num_speeds);
+    text += fmt::format(
+        "    GP cost {:+8.2f} median [{:+.2f}, {:+.2f}]; Wilcoxon p < 0.05 at {} of {}\n",
+        c.median_cost_difference, c.cost_interval.low, c.cost_interval.high,
+        CountSignificant(c, [](const SpeedComparison& s) { return s.all.p_holm; }), num_speeds);
   }
   return text;
 }

@@ -1,8 +1,9 @@
 #include "sidestep/bench/reproduce/published_table.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <utility>
 
@@ -94,13 +95,6 @@ double RelativeDifference(double ours, double published) {
   return std::abs(ours - published) / std::max(std::abs(published), 1e-300);
 }
 
-template <class... Values>
-std::string Print(const char* format, Values... values) {
-  char text[256];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
-
 }  // namespace
 
 CsvTable MakeOpenLoopTable(const OpenLoopStudy& study) {
@@ -182,26 +176,26 @@ TableComparison CompareTables(const CsvTable& ours, const CsvTable& published,
 }
 
 std::string Describe(const TableComparison& comparison) {
-  std::string text = Print("%d rows compared", comparison.rows_compared);
+  std::string text = fmt::format("{} rows compared", comparison.rows_compared);
   if (comparison.rows_only_published > 0) {
-    text += Print("; %d published rows were not run", comparison.rows_only_published);
+    text += fmt::format("; {} published rows were not run", comparison.rows_only_published);
   }
   if (comparison.rows_only_ours > 0) {
-    text += Print("; %d of our rows are not published", comparison.rows_only_ours);
+    text += fmt::format("; {} of our rows are not published", comparison.rows_only_ours);
   }
-  text += Print("\ncolliding-state counts: %d of %d agree\n", comparison.CountsAgreeing(),
-                comparison.CountsCompared());
-  text += Print("%-38s %8s %8s %12s %14s %14s\n", "column", "agree", "of", "largest rel.",
-                "our mean", "published mean");
+  text += fmt::format("\ncolliding-state counts: {} of {} agree\n", comparison.CountsAgreeing(),
+                      comparison.CountsCompared());
+  text += fmt::format("{:<38} {:>8} {:>8} {:>12} {:>14} {:>14}\n", "column", "agree", "of",
+                      "largest rel.", "our mean", "published mean");
   for (const ColumnComparison& column : comparison.columns) {
-    text += Print("%-38s %8d %8d %12.2e %14.6f %14.6f\n", column.column.c_str(), column.agreeing,
-                  column.compared, column.largest_relative_difference, column.mean_ours,
-                  column.mean_published);
+    text += fmt::format("{:<38} {:8} {:8} {:12.2e} {:14.6f} {:14.6f}\n", column.column,
+                        column.agreeing, column.compared, column.largest_relative_difference,
+                        column.mean_ours, column.mean_published);
   }
-  text += Print("(costs agree within %.0e)\n", kCostTolerance);
+  text += fmt::format("(costs agree within {:.0e})\n", kCostTolerance);
   for (const EntryDifference& entry : comparison.differences) {
-    text += Print("differs: pair %d, %g m/s, %s: %.15g, published %.15g\n", entry.pair,
-                  entry.speed_m_s, entry.column.c_str(), entry.ours, entry.published);
+    text += fmt::format("differs: pair {}, {:g} m/s, {}: {:.15g}, published {:.15g}\n", entry.pair,
+                        entry.speed_m_s, entry.column, entry.ours, entry.published);
   }
   return text;
 }

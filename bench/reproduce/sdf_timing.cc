@@ -1,12 +1,14 @@
 #include "sidestep/bench/reproduce/sdf_timing.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
 #include "sidestep/bench/report/html_page.h"
 #include "sidestep/bench/reproduce/published_columns.h"
 #include "sidestep/bench/statistics.h"
+#include "sidestep/core/number_text.h"
 
 namespace sidestep::bench {
 namespace {
@@ -59,9 +61,9 @@ std::optional<double> Published(const std::optional<CsvTable>& published, double
 }
 
 std::string FormatTime(double ms) {
-  if (ms >= 1) return Format("%.3g ms", ms);
-  if (ms >= 1e-3) return Format("%.3g us", 1e3 * ms);
-  return Format("%.0f ns", 1e6 * ms);
+  if (ms >= 1) return FiniteText("{:.3g} ms", ms);
+  if (ms >= 1e-3) return FiniteText("{:.3g} us", 1e3 * ms);
+  return FiniteText("{:.0f} ns", 1e6 * ms);
 }
 
 // What the table shows of a size: medians, in brackets the published means.
@@ -74,7 +76,7 @@ std::vector<Entry> Entries(const CsvTable& ours, std::size_t row,
   const auto text = [&](const char* measure, const std::string& their_column) {
     std::string cell = FormatTime(Get(ours, row, Name(measure, "median")));
     if (const auto theirs = Published(published, voxels, their_column)) {
-      cell += " (" + Format("%.3g", *theirs) + ")";
+      cell += " (" + FiniteText("{:.3g}", *theirs) + ")";
     }
     return cell;
   };
@@ -83,13 +85,13 @@ std::vector<Entry> Entries(const CsvTable& ours, std::size_t row,
     entries.push_back({measure.words, text(measure.name, measure.published)});
   }
   const auto ratio = [&](const char* measure) {
-    return Format("%.3g", Get(ours, row, "full_computation_ms_median") /
-                              Get(ours, row, Name(measure, "median")));
+    return FiniteText("{:.3g}", Get(ours, row, "full_computation_ms_median") /
+                                    Get(ours, row, Name(measure, "median")));
   };
   entries.push_back({"full / dense", ratio("dense_composite_ms")});
   const auto full = Published(published, voxels, "full_computation_mean_ms");
   const auto dense = Published(published, voxels, "composite_prediction_mean_ms");
-  if (full && dense) entries.back().text += " (" + Format("%.3g", *full / *dense) + ")";
+  if (full && dense) entries.back().text += " (" + FiniteText("{:.3g}", *full / *dense) + ")";
   return entries;
 }
 
@@ -198,19 +200,14 @@ std::string DescribeSdfTiming(const CsvTable& ours, const std::optional<CsvTable
   std::string text = "medians";
   text += published ? " (in brackets the published means, ms)\n" : "\n";
   for (std::size_t row = 0; row < ours.num_rows(); ++row) {
-    char line[128];
-    std::snprintf(line, sizeof line, "%.0f voxels a side, %g m\n", Get(ours, row, kVoxelsColumn),
-                  Get(ours, row, "cell_size_m"));
-    text += line;
+    text += fmt::format("{:.0f} voxels a side, {:g} m\n", Get(ours, row, kVoxelsColumn),
+                        Get(ours, row, "cell_size_m"));
     for (const Entry& entry : Entries(ours, row, published)) {
-      std::snprintf(line, sizeof line, "  %-28s %s\n", entry.words.c_str(), entry.text.c_str());
-      text += line;
+      text += fmt::format("  {:<28} {}\n", entry.words, entry.text);
     }
-    std::snprintf(line, sizeof line,
-                  "  %-28s %g m in free space, %g m inside obstacles (%.0f fields)\n",
-                  "composite off the exact by", Get(ours, row, "largest_error_free_m"),
-                  Get(ours, row, "largest_error_inside_m"), Get(ours, row, "n_compared"));
-    text += line;
+    text += fmt::format("  {:<28} {:g} m in free space, {:g} m inside obstacles ({:.0f} fields)\n",
+                        "composite off the exact by", Get(ours, row, "largest_error_free_m"),
+                        Get(ours, row, "largest_error_inside_m"), Get(ours, row, "n_compared"));
   }
   return text;
 }
@@ -244,10 +241,10 @@ std::string MakeSdfTimingPage(const SdfTimingOptions& options, const CsvTable& o
   std::vector<std::string> header = {"voxels a side"};
   std::vector<std::vector<std::string>> rows, errors;
   for (std::size_t row = 0; row < ours.num_rows(); ++row) {
-    rows.push_back({Format("%.0f", Get(ours, row, kVoxelsColumn))});
-    errors.push_back({rows.back().front(), Format("%.0f", Get(ours, row, "n_compared")),
-                      Format("%g", Get(ours, row, "largest_error_free_m")),
-                      Format("%g", Get(ours, row, "largest_error_inside_m"))});
+    rows.push_back({FiniteText("{:.0f}", Get(ours, row, kVoxelsColumn))});
+    errors.push_back({rows.back().front(), FiniteText("{:.0f}", Get(ours, row, "n_compared")),
+                      FiniteText("{:g}", Get(ours, row, "largest_error_free_m")),
+                      FiniteText("{:g}", Get(ours, row, "largest_error_inside_m"))});
     for (const Entry& entry : Entries(ours, row, published)) {
       if (row == 0) header.push_back(entry.words);
       rows.back().push_back(entry.text);

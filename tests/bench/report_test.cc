@@ -77,17 +77,13 @@ TEST(HtmlPage, EscapesTextAndStandsAlone) {
   HtmlPage page("a < b");
   page.Heading("x & y");
   page.Table({"name", "<1>"}, {{"\"q\"", "2"}});
+  page.Paragraph("caf\xC3\xA9, caf\xE9");
   page.Picture(svg, "what it shows");
   EXPECT_THAT(page.ToText(),
-              AllOf(HasSubstr("<title>a &lt; b</title>"), HasSubstr("<h2>x &amp; y</h2>"),
-                    HasSubstr("<td>&quot;q&quot;</td><td>2</td>"),
+              AllOf(HasSubstr("<title>a &lt; b</title>"), HasSubstr("<p>caf\xC3\xA9, caf\\xE9</p>"),
+                    HasSubstr("<h2>x &amp; y</h2>"), HasSubstr("<td>&quot;q&quot;</td><td>2</td>"),
                     HasSubstr("src=\"data:image/svg+xml,%3Csvg id=%22a%22%3E%23%3C/svg%3E%0A\"")));
   EXPECT_THROW(page.Picture("/nowhere.svg", ""), InputError);
-}
-
-TEST(Format, ShowsADashForWhatIsNoNumber) {
-  EXPECT_EQ(Format("%.1f s", 2.25), "2.2 s");
-  EXPECT_EQ(Format("%.1f s", NAN), "-");
 }
 
 }  // namespace

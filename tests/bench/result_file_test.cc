@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sidestep/bench/metrics/registry.h"
+#include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
 #include "tests/support/temporary_folder.h"
 
@@ -45,7 +46,7 @@ class ResultFile : public ::testing::Test {
 };
 
 TEST_F(ResultFile, IsReadBackAsItWasWritten) {
-  WriteTextFile(path_, ResultJson(SomeResult(), SomeScenario(), {{"mujoco", "2.2.2"}}));
+  WriteFile(path_, ResultJson(SomeResult(), SomeScenario(), {{"mujoco", "2.2.2"}}));
   const ResultSummary summary = ReadResult(path_);
   EXPECT_EQ(summary.outcome, Outcome::kCollision);
   EXPECT_EQ(summary.knowledge, "prediction");
@@ -96,18 +97,29 @@ TEST_F(ResultFile, WritesCountsAsWholeNumbers) {
   EXPECT_EQ(json["replans"], 35);
 }
 
+TEST_F(ResultFile, WritesOutBytesThatJsonCannotHold) {
+  scenarios::Scenario scenario = SomeScenario();
+  scenario.name = "caf\xE9";
+  const std::string text = ResultJson(SomeResult(), scenario, {{"k\xFF", "v\xFE"}});
+  const auto json = nlohmann::json::parse(text);
+  EXPECT_EQ(json["scenario"], "caf\\xE9");
+  EXPECT_EQ(json["versions"]["k\\xFF"], "v\\xFE");
+  WriteFile(path_, "\xEF\xBB\xBF" + text);
+  EXPECT_EQ(ReadResult(path_).scenario, "caf\\xE9");
+}
+
 TEST_F(ResultFile, OfAnotherKindIsRefused) {
-  EXPECT_EQ(Complaint(), path_ + ": no such file, or it cannot be read");
+  EXPECT_EQ(Complaint(), path_ + ": no such file");
   for (const char* const text : {"", "{", "[]", "{\"format\": 3}", "{\"format\": \"other\"}"}) {
-    WriteTextFile(path_, text);
+    WriteFile(path_, text);
     EXPECT_EQ(Complaint(), path_ + ": is not a result.json of sidestep") << text;
   }
-  WriteTextFile(path_, "{\"format\": \"sidestep-result-1\"}");
+  WriteFile(path_, "{\"format\": \"sidestep-result-1\"}");
   EXPECT_THAT(Complaint(), ::testing::StartsWith(path_ + ": is not a whole result: "));
 }
 
 TEST_F(ResultFile, LeavesNothingBehindWhereItCannotBeWritten) {
-  EXPECT_THROW(WriteTextFile("/nowhere/result.json", "{}"), InputError);
+  EXPECT_THROW(WriteFile("/nowhere/result.json", "{}"), InputError);
 }
 
 }  // namespace

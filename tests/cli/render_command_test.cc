@@ -49,6 +49,30 @@ TEST_F(RenderCommand, WritesVideoAndStill) {
   EXPECT_TRUE(std::filesystem::exists(Path("a.png")));
 }
 
+// Whatever looks like a protocol or a date to libavformat is the name of a file.
+TEST_F(RenderCommand, TakesEveryNameForAFile) {
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder_.path());
+  for (const std::string name : {"2026-11-27T10:15:00.mp4", "file:x.mp4", "http:x.mp4", "pipe:.mp4",
+                                 "caf\xE9.mp4", "UPPER.MP4", "%03d.mp4"}) {
+    EXPECT_EQ(Run(trace_ + " --out '" + name + "' --size 64x120 --fps 1"), "done") << name;
+    EXPECT_TRUE(std::filesystem::exists(name)) << name;
+  }
+  std::filesystem::current_path(before);
+}
+
+TEST_F(RenderCommand, DrawsAStillOfAnySizeUpToTheEnd) {
+  EXPECT_EQ(Run(trace_ + " --still " + Path("a.png") + " --size 321x181 --at 2"), "done");
+  EXPECT_TRUE(std::filesystem::exists(Path("a.png")));
+}
+
+TEST_F(RenderCommand, SaysWhichNamesItCannotSpell) {
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(Run(trace_ + " --still " + Path("a.png") + " --title 'caf\xC3\xA9'"), "done");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(),
+            "'caf\xC3\xA9': pictures have no letters but ASCII's; others show as '?'\n");
+}
+
 TEST_F(RenderCommand, SaysInOneLineWhatIsWrong) {
   std::ofstream(Path("cut.h5")) << "sidestep trace 1\n";
   const std::string still = " --still " + Path("a.png");
@@ -60,9 +84,11 @@ TEST_F(RenderCommand, SaysInOneLineWhatIsWrong) {
       {trace_ + still + " --size 1280", "--size: must be WIDTHxHEIGHT in pixels"},
       {trace_ + still + " --size 640x360x2", "--size: must be WIDTHxHEIGHT in pixels"},
       {trace_ + still + " --size 99999x2", "--size: must be WIDTHxHEIGHT in pixels"},
-      {trace_ + still + " --size 641x360", "--size: width and height must be even"},
+      {trace_ + still + " --out " + Path("a.mp4") + " --size 641x360",
+       "--size: a video's width and height must be even, is '641x360'"},
       {trace_ + still + " --size 30x30", "--size: 30x30 is too small for 1 traces"},
       {trace_ + still + " --at -1", "--at: "},
+      {trace_ + still + " --at 2.1", "--at: the last episode ends at 2.000 s, before 2.1 s"},
       {trace_ + still + " --fps 0", "--fps: "},
       {trace_ + still + " --speed 0", "--speed: "},
       {trace_ + still + " --camera left", "--camera: 'left' is not in "},
@@ -71,6 +97,13 @@ TEST_F(RenderCommand, SaysInOneLineWhatIsWrong) {
       {Path("cut.h5") + still, Path("cut.h5") + ": is cut off"},
       {Path(".") + still, "is a directory, not a file"},
       {trace_ + " --still " + Path("absent/a.png"), "absent/a.png: cannot be written"},
+      {trace_ + " --out " + Path("absent/a.mp4"), "absent/a.mp4: cannot be written"},
+      {trace_ + " --still " + Path("a.jpg"), "a.jpg: a picture needs a name that ends in .png"},
+      {trace_ + " --still " + Path("a"), "/a: a picture needs a name that ends in .png"},
+      {trace_ + " --out " + Path("a.avi"), "a.avi: a video needs a name that ends in .mp4"},
+      {trace_ + " --out " + Path(".mp4"), "/.mp4: a video needs a name that ends in .mp4"},
+      {trace_ + " --out http://localhost:1/a.mp4",
+       "http://localhost:1/a.mp4: cannot be written: No such file"},
   };
   for (const auto& c : cases) {
     const std::string message = Run(c.arguments);

@@ -77,7 +77,7 @@ TEST_F(NrrdFile, ThatCannotBeWrittenIsNamed) {
     WriteNrrd(OccupancyGrid({{0, 0, 0}, 1, {1, 1, 1}}), folder_);
     FAIL() << "was written";
   } catch (const InputError& error) {
-    EXPECT_EQ(error.what(), folder_ + ": cannot be written");
+    EXPECT_EQ(error.what(), folder_ + ": cannot be written: Is a directory");
   }
 }
 

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <fmt/core.h>
+
+#include <string_view>
+#include <utility>
+
+namespace sidestep::cli {
+
+/// Everything that commands say goes through here, so that a terminal gets text: bytes that are not
+/// UTF-8, as the name of a file may hold, are written out (core/utf8.h).
+void PrintText(std::string_view text);       // standard output
+void PrintErrorText(std::string_view text);  // standard error
+
+template <typename... Values>
+void Print(fmt::format_string<Values...> format, Values&&... values) {
+  PrintText(fmt::format(format, std::forward<Values>(values)...));
+}
+template <typename... Values>
+void PrintError(fmt::format_string<Values...> format, Values&&... values) {
+  PrintErrorText(fmt::format(format, std::forward<Values>(values)...));
+}
+
+/// Call once a command is done: hands on what is still held back.
+/// @throws InputError if standard output could not take everything, as on a full disk. That a
+/// reader has gone away, `| head`, is no error.
+void FinishOutput();
+
+}  // namespace sidestep::cli
