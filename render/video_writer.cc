@@ -304,7 +304,7 @@ void WritePng(const Image& image, const std::string& path) {
   const AvPtr<AVFrame> frame = MakeFrame(AV_PIX_FMT_RGB24, image.width(), image.height());
   for (int y = 0; y < image.height(); ++y) {
     std::memcpy(frame->data[0] + y * frame->linesize[0], image.row(y),
-                static_cast<std::size_t>(3 * image.width()));
+                3 * static_cast<std::size_t>(image.width()));
   }
   const AvPtr<AVPacket> packet(av_packet_alloc());
   if (!packet) throw std::bad_alloc();
