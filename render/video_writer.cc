@@ -123,7 +123,7 @@ AVIOContext* OpenCursor(Cursor& cursor, bool for_writing) {
 }
 
 bool EndsWith(const std::string& text, const std::string& ending) {
-  return text.size() > ending.size() &&
+  return text.size() >= ending.size() &&
          std::equal(ending.rbegin(), ending.rend(), text.rbegin(), [](char wanted, char c) {
            return wanted == std::tolower(static_cast<unsigned char>(c));
          });
