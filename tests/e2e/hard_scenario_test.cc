@@ -102,7 +102,9 @@ TEST_P(HardScenario, EndsWithItsOutcomeReasonAndTrace) {
     EXPECT_THAT(result["reason"].get<std::string>(), HasSubstr(expected_.reason));
     EXPECT_EQ(recording.header.at("reason"), result["reason"]);
   }
-  EXPECT_EQ(result["first_contact_s"].is_number(), expected_.outcome == "collision");
+  if (expected_.outcome == "collision") {
+    EXPECT_TRUE(result["first_contact_s"].is_number());
+  }
 }
 
 TEST_P(HardScenario, IsComparedLikeAnyOther) {
