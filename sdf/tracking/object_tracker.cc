@@ -19,6 +19,8 @@ constexpr int kCellsAScan = 2;
 // By what share of its cells a thing may seem to grow or shrink when it only turns: cells along its
 // surface.
 constexpr double kTurnedCells = 0.2;
+// And how far its middle may then be from where it was expected, in cells.
+constexpr double kTurnedShift = 1.6;
 
 std::array<int, 3> Extent(const Component& component) {
   std::array<int, 3> extent;
@@ -221,13 +223,15 @@ void ObjectTracker::Follow(Track& track, const Component& component, EpisodeTime
   const bool deformed = is_other && is_whole && !track.cut_off;
   const bool completed = is_whole && track.cut_off;
   const bool grew = is_longer && component.cells.size() > track.num_cells;
-  // What turns has another outline of about as many cells, and its middle is where they are; what
-  // merges with another thing or parts from it has more or fewer.
+  // What turns has another outline of about as many cells around a middle that goes on as before.
+  // What merges or parts has more or fewer; of a surface that shows another side, the middle jumps.
+  const Eigen::Vector3d p_WSeen = Locate(track, component);
+  const Eigen::Vector3d p_WExpected = PredictPosition(track.object, t);
   const auto before = static_cast<double>(track.num_cells);
   const auto now = static_cast<double>(component.cells.size());
-  const bool is_as_large = std::abs(now - before) <= kTurnedCells * before;
-  const bool is_seen = !deformed || is_as_large;
-  AddSighting(track, See(t, is_seen ? Locate(track, component) : PredictPosition(track.object, t)));
+  const bool has_turned = std::abs(now - before) <= kTurnedCells * before &&
+                          (p_WSeen - p_WExpected).norm() <= kTurnedShift * grid_.cell_m;
+  AddSighting(track, See(t, deformed && !has_turned ? p_WExpected : p_WSeen));
   if (deformed || completed || grew) TakeShape(track, component);
 }
 

@@ -57,9 +57,10 @@ struct TrackerTimes {
 /// A position is the centroid of the component. Where the grid's border cuts a thing off, it is
 /// measured from the face that is seen instead, so that a thing that enters or leaves has its true
 /// speed and keeps the most of its shape that was ever seen. When the outline changes otherwise,
-/// the cells are its new shape. If they are about as many, it has turned, and is where their
-/// centroid is; else (two things merge or part) it is taken to have moved on as before, and later
-/// positions are those of the new shape.
+/// the cells are its new shape. If they are about as many, around a middle that is near to where it
+/// was expected, it has turned, and is where it is seen; else (two things merge or part, a surface
+/// shows another side) it is taken to have moved on as before, and later positions are those of the
+/// new shape.
 ///
 /// Deterministic: ties go to the older thing and the lower cell.
 class ObjectTracker {
