@@ -17,7 +17,7 @@ constexpr int kDone = 0, kFailed = 1, kBadInput = 2;
 // One line, whatever the message holds.
 int Complain(std::string message, int exit_code) {
   std::replace(message.begin(), message.end(), '\n', ' ');
-  sidestep::PrintErrorText(message + "\n");
+  sidestep::cli::PrintErrorText(message + "\n");
   return exit_code;
 }
 
@@ -61,7 +61,7 @@ int Run(int argc, char** argv) {
   } catch (const CLI::Success& help) {
     std::ostringstream text;
     line.app.exit(help, text, text);
-    sidestep::PrintText(text.str());
+    sidestep::cli::PrintText(text.str());
     return kDone;
   } catch (const CLI::ParseError& error) {
     return Complain("sidestep: " + std::string(error.what()) + " (see sidestep --help)", kBadInput);
@@ -76,7 +76,7 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   try {
     const int exit_code = Run(argc, argv);
-    sidestep::FinishOutput();
+    sidestep::cli::FinishOutput();
     return exit_code;
   } catch (const sidestep::InputError& error) {
     return Complain(error.what(), kBadInput);
