@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string>
 
 namespace sidestep {
 
@@ -17,6 +18,18 @@ void CheckTrajectory(const Trajectory& trajectory) {
   for (Eigen::Index k = 1; k < K; ++k) {
     if (!(trajectory.t_s(k) > trajectory.t_s(k - 1))) {
       throw std::invalid_argument("trajectory: times must increase strictly");
+    }
+    const double h = trajectory.t_s(k) - trajectory.t_s(k - 1);
+    if (h < kLeastInterval_s) {
+      throw std::invalid_argument("trajectory: states must be at least 1e-6 s apart");
+    }
+    // What lies between two states is bounded by what it is at them.
+    const auto v0 = trajectory.v.col(k - 1), v1 = trajectory.v.col(k);
+    const Eigen::VectorXd turn = 6 / (h * h) * (trajectory.q.col(k) - trajectory.q.col(k - 1));
+    if (!(turn - (4 * v0 + 2 * v1) / h).allFinite() ||
+        !((2 * v0 + 4 * v1) / h - turn).allFinite()) {
+      throw std::invalid_argument("trajectory: every acceleration must be finite, not so after " +
+                                  std::to_string(trajectory.t_s(k - 1)) + " s");
     }
   }
 }

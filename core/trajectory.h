@@ -20,12 +20,16 @@ struct TrajectoryPoint {
   Eigen::VectorXd a;
 };
 
+/// Support states stand at least this far apart. Nearer ones would be a jump to whatever executes
+/// them, and the accelerations between them numbers that mean nothing.
+inline constexpr double kLeastInterval_s = 1e-6;
+
 /// Support states of a joint motion. Between two of them the motion is the cubic that matches both
 /// positions and both velocities (the mean of the constant-velocity Gaussian process), so position
 /// and velocity are continuous and the acceleration jumps at support states.
 /// Column k is the state at `t_s(k)` seconds after the trajectory's start, which travels beside it.
 struct Trajectory {
-  Eigen::VectorXd t_s;  ///< [s] shape K >= 1, strictly increasing, from the trajectory's start
+  Eigen::VectorXd t_s;  ///< [s] shape K >= 1, rising by >= kLeastInterval_s, from the start
   Eigen::MatrixXd q;    ///< n x K
   Eigen::MatrixXd v;    ///< n x K
 
@@ -33,7 +37,8 @@ struct Trajectory {
   int num_joints() const { return static_cast<int>(q.rows()); }
 };
 
-/// @throws std::invalid_argument if shapes disagree, a number is not finite, times do not increase.
+/// @throws std::invalid_argument if shapes disagree, a number is not finite, times do not increase
+/// by kLeastInterval_s at least, or an acceleration in between is not finite.
 void CheckTrajectory(const Trajectory& trajectory);
 
 /// The point `offset` after the start. Before the first state and after the last one the motion

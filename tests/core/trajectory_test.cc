@@ -112,6 +112,16 @@ TEST(Trajectory, OfOneStateRestsThere) {
   }
 }
 
+TEST(Trajectory, OfTheLeastIntervalHasFiniteAccelerations) {
+  Trajectory trajectory = RandomTrajectory();
+  trajectory.t_s = Eigen::VectorXd::LinSpaced(5, 0, 4) * (1.001 * kLeastInterval_s);
+  ASSERT_NO_THROW(CheckTrajectory(trajectory));
+  for (const double share : {0.0, 0.3, 1.0, 3.9}) {
+    const TrajectoryPoint point = Sample(trajectory, HorizonOffset(share * kLeastInterval_s));
+    EXPECT_TRUE(point.q.allFinite() && point.v.allFinite() && point.a.allFinite()) << share;
+  }
+}
+
 struct Fault {
   std::string name;
   std::function<void(Trajectory&)> make;
@@ -140,6 +150,13 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"FewerJointsInVelocity", [](Trajectory& x) { x.v.conservativeResize(2, 5); }},
         Fault{"EqualTimes", [](Trajectory& x) { x.t_s(2) = x.t_s(1); }},
         Fault{"DecreasingTimes", [](Trajectory& x) { x.t_s(4) = 0; }},
+        Fault{"TimesThatDifferByNothingWorthIt",
+              [](Trajectory& x) {
+                x.t_s = Vector({0, 1e-200, 2e-200, 1, 2});
+              }},
+        Fault{"TimesJustTooNear",
+              [](Trajectory& x) { x.t_s(2) = x.t_s(1) + 0.99 * kLeastInterval_s; }},
+        Fault{"AccelerationBeyondAllNumbers", [](Trajectory& x) { x.q(1, 2) = 1e307; }},
         Fault{"TimeIsNan", [](Trajectory& x) { x.t_s(1) = kNan; }},
         Fault{"TimeIsInfinite", [](Trajectory& x) { x.t_s(4) = kInf; }},
         Fault{"PositionIsNan", [](Trajectory& x) { x.q(2, 3) = kNan; }},
