@@ -7,20 +7,18 @@ namespace sidestep::planner {
 
 GaussNewtonPlanner::GaussNewtonPlanner(const robot::RobotModel& robot,
                                        const PlannerSettings& settings)
-    : Planner(robot), settings_(settings) {
-  CheckPlannerSettings(settings);
-}
+    : Planner(robot, settings) {}
 
 PlanResult GaussNewtonPlanner::DoPlan(const PlanRequest& request) const {
   const Trajectory guess =
       request.initial ? MakeWarmStart(request) : MakeDirectMotion(request, Timing::kWholeTime);
   GaussNewtonOptions options;
-  options.epsilon_m = settings_.epsilon_m;
-  options.sigma_obs = settings_.sigma_obs;
-  options.num_interpolated = settings_.num_interpolated;
-  options.qc = settings_.qc;
-  options.max_iterations = settings_.max_iterations;
-  options.relative_decrease = settings_.function_tolerance;
+  options.epsilon_m = settings().epsilon_m;
+  options.sigma_obs = settings().sigma_obs;
+  options.num_interpolated = settings().num_interpolated;
+  options.qc = settings().qc;
+  options.max_iterations = settings().max_iterations;
+  options.relative_decrease = settings().function_tolerance;
 
   // States before the last fixed one decide nothing.
   const int num_fixed = request.num_fixed, num_solved = request.num_states - num_fixed + 1;
@@ -28,9 +26,10 @@ PlanResult GaussNewtonPlanner::DoPlan(const PlanRequest& request) const {
       robot(),
       {guess.t_s.tail(num_solved), guess.q.rightCols(num_solved), guess.v.rightCols(num_solved)},
       options);
-  problem.AddPrior(0, guess.q.col(num_fixed - 1), guess.v.col(num_fixed - 1), settings_.sigma_goal);
+  problem.AddPrior(0, guess.q.col(num_fixed - 1), guess.v.col(num_fixed - 1),
+                   settings().sigma_goal);
   problem.AddPrior(num_solved - 1, request.q_goal, Eigen::VectorXd::Zero(robot().num_joints()),
-                   settings_.sigma_goal);
+                   settings().sigma_goal);
   for (int k = 1; k < num_solved; ++k) problem.SetField(k, *request.field, request.start);
   const GaussNewtonSummary summary = problem.Solve();
 

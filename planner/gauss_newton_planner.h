@@ -11,7 +11,7 @@ namespace sidestep::planner {
 /// plain Gauss-Newton from the first guess, fixed states held by priors of sigma_goal, no limits,
 /// no second try. A yardstick: what undamped steps find depends on how they end, and the limits of
 /// the robot may be exceeded; the result says so. Settings: max_iterations and function_tolerance
-/// bound the solve; the three switches of limits do nothing.
+/// bound the solve; the limits only judge it.
 class GaussNewtonPlanner final : public Planner {
  public:
   /// @throws std::invalid_argument for settings out of range.
@@ -23,8 +23,6 @@ class GaussNewtonPlanner final : public Planner {
 
  private:
   PlanResult DoPlan(const PlanRequest& request) const override;
-
-  PlannerSettings settings_;
 };
 
 std::unique_ptr<Planner> MakeGaussNewtonPlanner(const robot::RobotModel& robot,

@@ -59,29 +59,27 @@ EpisodeTime FirstFreeTime(const PlanRequest& request) {
 }  // namespace
 
 GpPlanner::GpPlanner(const robot::RobotModel& robot, const PlannerSettings& settings)
-    : Planner(robot), settings_(settings) {
-  CheckPlannerSettings(settings);
-}
+    : Planner(robot, settings) {}
 
 PlanResult GpPlanner::Solve(const PlanRequest& request, const Trajectory& guess, Stages stages,
                             const Clearance* to_beat) const {
   GpProblemOptions options;
-  options.epsilon_m = settings_.epsilon_m;
-  options.sigma_obs = settings_.sigma_obs;
-  options.num_interpolated = settings_.num_interpolated;
-  options.qc = settings_.qc;
-  options.sigma_goal = settings_.sigma_goal;
+  options.epsilon_m = settings().epsilon_m;
+  options.sigma_obs = settings().sigma_obs;
+  options.num_interpolated = settings().num_interpolated;
+  options.qc = settings().qc;
+  options.sigma_goal = settings().sigma_goal;
   options.self_epsilon_m = kSelfEpsilon_m;
   options.condensed = true;
   LimitWeights limits;
-  if (settings_.position_limits) limits.position = kPositionWeight;
-  if (settings_.velocity_limits) limits.velocity = kVelocityWeight;
-  if (settings_.acceleration_limits) limits.acceleration = kAccelerationWeight;
+  if (settings().position_limits) limits.position = kPositionWeight;
+  if (settings().velocity_limits) limits.velocity = kVelocityWeight;
+  if (settings().acceleration_limits) limits.acceleration = kAccelerationWeight;
 
   GpProblem problem(robot(), request, guess, options);
   int iterations = 0;
   const int max_iterations =
-      to_beat ? std::min(kTrialIterations, settings_.max_iterations) : settings_.max_iterations;
+      to_beat ? std::min(kTrialIterations, settings().max_iterations) : settings().max_iterations;
   const auto solve = [&](double function_tolerance) {
     const SolveOutcome outcome =
         SolveByLevenbergMarquardt(problem.problem(), max_iterations, function_tolerance);
@@ -94,8 +92,8 @@ PlanResult GpPlanner::Solve(const PlanRequest& request, const Trajectory& guess,
     result.iterations = iterations;
     if (result.clearance.first_contact && !IsSafer(result.clearance, *to_beat)) return result;
   }
-  problem.AddLimits(limits, settings_.velocity_scale, settings_.acceleration_scale);
-  const bool converged = solve(settings_.function_tolerance);
+  problem.AddLimits(limits, settings().velocity_scale, settings().acceleration_scale);
+  const bool converged = solve(settings().function_tolerance);
 
   PlanResult result = MakeResult(request, problem.GetTrajectory(), converged);
   result.iterations = iterations;
@@ -104,9 +102,9 @@ PlanResult GpPlanner::Solve(const PlanRequest& request, const Trajectory& guess,
 }
 
 bool GpPlanner::IsWithinLimits(const PlanResult& plan) const {
-  return (!settings_.position_limits || plan.limit_use.position <= 1) &&
-         (!settings_.velocity_limits || plan.limit_use.velocity <= 1) &&
-         (!settings_.acceleration_limits || plan.limit_use.acceleration <= 1);
+  return (!settings().position_limits || plan.limit_use.position <= 1) &&
+         (!settings().velocity_limits || plan.limit_use.velocity <= 1) &&
+         (!settings().acceleration_limits || plan.limit_use.acceleration <= 1);
 }
 
 bool GpPlanner::IsBetter(const PlanResult& a, const PlanResult& b) const {
@@ -138,7 +136,7 @@ PlanResult GpPlanner::DoPlan(const PlanRequest& request) const {
   }
   // A warm start has less time for one. Other ones a cycle later: who waits without a way out tries
   // more and more of them.
-  const int num_detours = request.initial ? 0 : settings_.num_detours;
+  const int num_detours = request.initial ? 0 : settings().num_detours;
   RandomStream random(std::bit_cast<std::uint64_t>(FirstFreeTime(request).seconds()), "detours");
   for (int i = 0; i < num_detours && best.clearance.first_contact; ++i) {
     attempt(MakeDetour(request, random));

@@ -40,11 +40,9 @@ class GpPlanner final : public Planner {
   /// first stage if that touches something and is not safer.
   PlanResult Solve(const PlanRequest& request, const Trajectory& guess, Stages stages,
                    const Clearance* to_beat = nullptr) const;
-  bool IsWithinLimits(const PlanResult& plan) const;  // those that count by the settings
+  bool IsWithinLimits(const PlanResult& plan) const;  // the robot's own, unscaled
   /// Free within limits comes before free, free before not free; then what is safer.
   bool IsBetter(const PlanResult& a, const PlanResult& b) const;
-
-  PlannerSettings settings_;
 };
 
 std::unique_ptr<Planner> MakeGpPlanner(const robot::RobotModel& robot,

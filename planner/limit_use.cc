@@ -14,11 +14,11 @@ double PositionUse(const robot::JointLimits& limits, double q) {
 
 }  // namespace
 
-LimitUse MeasureLimitUse(const robot::RobotModel& robot, const Trajectory& trajectory,
-                         int first_state) {
+LimitUse MeasureLimitUse(const std::vector<robot::JointLimits>& all_limits,
+                         const Trajectory& trajectory, int first_state) {
   LimitUse use;
-  for (int i = 0; i < robot.num_joints(); ++i) {
-    const robot::JointLimits& limits = robot.limits()[i];
+  for (int i = 0; i < trajectory.num_joints(); ++i) {
+    const robot::JointLimits& limits = all_limits[static_cast<std::size_t>(i)];
     for (int k = first_state; k < trajectory.num_states(); ++k) {
       use.position = std::max(use.position, PositionUse(limits, trajectory.q(i, k)));
       use.velocity = std::max(use.velocity, std::abs(trajectory.v(i, k)) / limits.v_max);
@@ -31,6 +31,7 @@ LimitUse MeasureLimitUse(const robot::RobotModel& robot, const Trajectory& traje
       const double a1 = -6 * dq / (dt * dt) + (2 * v0 + 4 * v1) / dt;
       use.acceleration =
           std::max({use.acceleration, std::abs(a0) / limits.a_max, std::abs(a1) / limits.a_max});
+      use.jerk = std::max(use.jerk, std::abs(a1 - a0) / dt / limits.jerk_max);
       if (a0 * a1 < 0) {  // The velocity turns inside, where the acceleration crosses zero.
         const double v_turn = v0 + 0.5 * a0 * dt * a0 / (a0 - a1);
         use.velocity = std::max(use.velocity, std::abs(v_turn) / limits.v_max);
@@ -38,6 +39,11 @@ LimitUse MeasureLimitUse(const robot::RobotModel& robot, const Trajectory& traje
     }
   }
   return use;
+}
+
+LimitUse MeasureLimitUse(const robot::RobotModel& robot, const Trajectory& trajectory,
+                         int first_state) {
+  return MeasureLimitUse(robot.limits(), trajectory, first_state);
 }
 
 }  // namespace sidestep::planner

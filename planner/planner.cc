@@ -24,7 +24,8 @@ void RequireVector(const Eigen::VectorXd& vector, int n, const std::string& name
 void CheckRequest(const PlanRequest& request, int n) {
   Require(request.field != nullptr, "there is no field");
   Require(std::isfinite(request.start.seconds()), "start must be finite");
-  Require(std::isfinite(request.step_s) && request.step_s > 0, "step_s must be > 0 and finite");
+  Require(std::isfinite(request.step_s) && request.step_s >= kLeastInterval_s,
+          "step_s must be at least 1e-6 and finite");
   Require(request.num_states >= 2, "num_states must be >= 2");
   RequireVector(request.q_start, n, "q_start");
   RequireVector(request.v_start, n, "v_start");
@@ -58,10 +59,17 @@ std::string ToString(PlanStatus status) {
       return "solved";
     case PlanStatus::kNotConverged:
       return "not_converged";
+    case PlanStatus::kOverLimits:
+      return "over_limits";
     case PlanStatus::kInCollision:
       return "in_collision";
   }
   throw std::invalid_argument("unknown PlanStatus");
+}
+
+Planner::Planner(const robot::RobotModel& robot, const PlannerSettings& settings)
+    : robot_(robot), settings_(settings) {
+  CheckPlannerSettings(settings);
 }
 
 PlanResult Planner::Plan(const PlanRequest& request) const {
@@ -79,6 +87,8 @@ PlanResult Planner::MakeResult(const PlanRequest& request, const Trajectory& tra
   result.limit_use = MeasureLimitUse(robot_, trajectory, request.num_fixed - 1);
   if (result.clearance.first_contact) {
     result.status = PlanStatus::kInCollision;
+  } else if (!KeepsLimits(result.limit_use, settings_)) {
+    result.status = PlanStatus::kOverLimits;
   } else {
     result.status = converged ? PlanStatus::kSolved : PlanStatus::kNotConverged;
   }

@@ -8,6 +8,7 @@
 #include "sidestep/core/trajectory.h"
 #include "sidestep/planner/clearance.h"
 #include "sidestep/planner/limit_use.h"
+#include "sidestep/planner/planner_settings.h"
 #include "sidestep/robot/robot_model.h"
 #include "sidestep/sdf/distance_field.h"
 
@@ -17,9 +18,10 @@ namespace sidestep::planner {
 enum class PlanStatus {
   kSolved,        ///< the planner stopped by itself and the plan is free in the given field
   kNotConverged,  ///< free, but the iteration cap was reached: the best so far
+  kOverLimits,    ///< free, but it exceeds a limit that the settings ask to keep
   kInCollision    ///< it touches something in the given field
 };
-/// "solved", "not_converged", "in_collision".
+/// "solved", "not_converged", "over_limits", "in_collision".
 std::string ToString(PlanStatus status);
 
 /// Support states k = 0 ... num_states-1 at start + k step. References are borrowed for the call.
@@ -51,7 +53,7 @@ struct PlanResult {
   /// Each part half the sum of squared residuals; what only fixed states decide is left out.
   PlanCost cost;
   Clearance clearance;  ///< of the free part, in the field
-  LimitUse limit_use;   ///< of the free part
+  LimitUse limit_use;   ///< of the free part, of the robot's own limits
 };
 
 /// What a planner can do beyond what every planner promises; tests hold it to what it declares.
@@ -73,7 +75,11 @@ class Planner {
   const robot::RobotModel& robot() const { return robot_; }
 
  protected:
-  explicit Planner(const robot::RobotModel& robot) : robot_(robot) {}
+  /// @param settings by whose limits results are judged, whether the planner heeds them or not.
+  /// @throws std::invalid_argument for settings out of range.
+  Planner(const robot::RobotModel& robot, const PlannerSettings& settings);
+
+  const PlannerSettings& settings() const { return settings_; }
 
   /// The result for a trajectory on the request's grid, judged; without cost and iterations.
   PlanResult MakeResult(const PlanRequest& request, const Trajectory& trajectory,
@@ -82,6 +88,7 @@ class Planner {
  private:
   virtual PlanResult DoPlan(const PlanRequest& request) const = 0;  // `request` has been checked.
   robot::RobotModel robot_;
+  PlannerSettings settings_;
 };
 
 }  // namespace sidestep::planner

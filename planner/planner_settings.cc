@@ -15,6 +15,8 @@ bool IsPositive(double value) { return std::isfinite(value) && value > 0; }
 
 bool IsFraction(double value) { return value > 0 && value <= 1; }
 
+constexpr double kLimitTolerance = 1e-3;  // what an optimum at a limit exceeds it by is rounding
+
 }  // namespace
 
 void CheckPlannerSettings(const PlannerSettings& settings) {
@@ -28,6 +30,14 @@ void CheckPlannerSettings(const PlannerSettings& settings) {
   Require(settings.max_iterations >= 1, "max_iterations must be >= 1");
   Require(settings.num_detours >= 0, "num_detours must be >= 0");
   Require(IsPositive(settings.function_tolerance), "function_tolerance must be > 0");
+}
+
+bool KeepsLimits(const LimitUse& use, const PlannerSettings& settings) {
+  constexpr double kWhole = 1 + kLimitTolerance;
+  return (!settings.position_limits || use.position <= kWhole) &&
+         (!settings.velocity_limits || use.velocity <= kWhole * settings.velocity_scale) &&
+         (!settings.acceleration_limits ||
+          use.acceleration <= kWhole * settings.acceleration_scale);
 }
 
 }  // namespace sidestep::planner

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "sidestep/planner/limit_use.h"
+
 namespace sidestep::planner {
 
 /// What scenario files set of a planner. Units as named; sources: the GPMP2 obstacle and GP costs.
@@ -26,5 +28,9 @@ struct PlannerSettings {
 
 /// @throws std::invalid_argument, naming the setting, for one out of range.
 void CheckPlannerSettings(const PlannerSettings& settings);
+
+/// Whether a motion that uses so much of a robot's limits keeps those that `settings` ask for: the
+/// scaled ones of the kinds that are switched on, but for a thousandth.
+bool KeepsLimits(const LimitUse& use, const PlannerSettings& settings);
 
 }  // namespace sidestep::planner

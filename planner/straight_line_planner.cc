@@ -9,8 +9,8 @@ PlanResult StraightLinePlanner::DoPlan(const PlanRequest& request) const {
 }
 
 std::unique_ptr<Planner> MakeStraightLinePlanner(const robot::RobotModel& robot,
-                                                 const PlannerSettings&) {
-  return std::make_unique<StraightLinePlanner>(robot);
+                                                 const PlannerSettings& settings) {
+  return std::make_unique<StraightLinePlanner>(robot, settings);
 }
 
 }  // namespace sidestep::planner

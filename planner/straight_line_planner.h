@@ -11,7 +11,8 @@ namespace sidestep::planner {
 /// yardstick for planners that look.
 class StraightLinePlanner final : public Planner {
  public:
-  explicit StraightLinePlanner(const robot::RobotModel& robot) : Planner(robot) {}
+  StraightLinePlanner(const robot::RobotModel& robot, const PlannerSettings& settings)
+      : Planner(robot, settings) {}
 
   PlannerCapabilities capabilities() const override { return {.reaches_goal = true}; }
 

@@ -10,7 +10,8 @@ namespace {
 
 class HoldStillPlanner final : public Planner {
  public:
-  explicit HoldStillPlanner(const robot::RobotModel& robot) : Planner(robot) {}
+  HoldStillPlanner(const robot::RobotModel& robot, const PlannerSettings& settings)
+      : Planner(robot, settings) {}
 
  private:
   PlanResult DoPlan(const PlanRequest& request) const override {
@@ -33,8 +34,8 @@ class HoldStillPlanner final : public Planner {
 }  // namespace
 
 std::unique_ptr<Planner> MakeHoldStillPlanner(const robot::RobotModel& robot,
-                                              const PlannerSettings&) {
-  return std::make_unique<HoldStillPlanner>(robot);
+                                              const PlannerSettings& settings) {
+  return std::make_unique<HoldStillPlanner>(robot, settings);
 }
 
 }  // namespace sidestep::planner

@@ -129,6 +129,20 @@ TEST_P(EveryPlanner, SaysOfItsPlanWhatIsTrueOfItInTheField) {
   }
 }
 
+TEST_P(EveryPlanner, SaysSoWhenAFreePlanExceedsALimitThatItWasAskedToKeep) {
+  const BallField nothing({100, 0, 0}, {0, 0, 0}, 0.1);
+  PlanRequest request = Request();  // 2.3 rad in 2 s
+  request.field = &nothing;
+  PlannerSettings slow;
+  slow.velocity_scale = 0.2;  // of 2 rad/s, which is 0.8 rad in 2 s
+  const PlanResult plan = MakePlanner(GetParam(), arm_, slow)->Plan(request);
+  EXPECT_EQ(ToString(plan.status), "over_limits");
+  EXPECT_GT(plan.limit_use.velocity, 0.5);
+  slow.velocity_limits = false;
+  slow.acceleration_scale = 1;
+  EXPECT_EQ(MakePlanner(GetParam(), arm_, slow)->Plan(request).status, PlanStatus::kSolved);
+}
+
 TEST_P(EveryPlanner, RefusesSettingsOutOfRange) {
   const std::vector<std::function<void(PlannerSettings&)>> spoil = {
       [](PlannerSettings& s) { s.epsilon_m = -0.1; },
@@ -155,6 +169,7 @@ TEST_P(EveryPlanner, RefusesRequestsThatMeanNothing) {
       [](PlanRequest& r) { r.start = EpisodeTime(kNaN); },
       [](PlanRequest& r) { r.step_s = 0; },
       [](PlanRequest& r) { r.step_s = kNaN; },
+      [](PlanRequest& r) { r.step_s = 1e-200; },
       [](PlanRequest& r) { r.num_states = 1; },
       [](PlanRequest& r) { r.q_start = Eigen::VectorXd::Zero(3); },
       [](PlanRequest& r) { r.q_start(1) = kNaN; },

@@ -164,6 +164,11 @@ TEST(LimitUse, IsThatOfTheCubicBetweenItsStates) {
   EXPECT_NEAR(use.velocity, 2.7 / 2, 1e-12);
   EXPECT_NEAR(use.acceleration, 10.8 / 10, 1e-12);
   EXPECT_NEAR(use.position, 1.6 / 2.5, 1e-12);
+  EXPECT_EQ(use.jerk, 0) << "the arm has no such limit";
+  // The acceleration goes from 10.8 to -10.8 within the second.
+  std::vector<robot::JointLimits> limits = MakePlanarArm().limits();
+  limits[0].jerk_max = 54;
+  EXPECT_NEAR(MeasureLimitUse(limits, motion, 0).jerk, 21.6 / 54, 1e-12);
   EXPECT_EQ(MeasureLimitUse(MakePlanarArm(), motion, 1).acceleration, 0);
 }
 
