@@ -7,15 +7,17 @@
 #include <vector>
 
 #include "sidestep/core/cpu_time.h"
+#include "sidestep/planner/braking.h"
 #include "sidestep/planner/clearance.h"
 
 namespace sidestep::planner {
 namespace {
 
 constexpr const char* kBraked = "braked";
-constexpr int kMinFreeStates = 3;     // fewer leave nothing to choose
-constexpr double kOffPlan_rad = 0.1;  // a robot this far from its plan does not follow it
-constexpr double kGoalTolerance_rad = 0.01;
+constexpr int kMinFreeStates = 3;        // fewer leave nothing to choose
+constexpr double kOffPlan_rad = 0.1;     // a robot this far from its plan does not follow it
+constexpr double kStill_rad_s = 0.01;    // what is measured of a robot at rest is noise below this
+constexpr double kArrivesLate_s = 0.5;   // an arm lags its plan by less, or does not arrive by it
 constexpr double kRecordStep_s = 0.1;    // between the recorded positions of a predicted object
 constexpr double kTimeEpsilon_s = 1e-9;  // support times are sums of steps, rounded
 
@@ -37,6 +39,41 @@ std::vector<EpisodeTime> TimesToRecord(EpisodeTime from, EpisodeTime to) {
   return times;
 }
 
+// Where a robot is after `ahead` if each joint stops as fast as it may.
+TrajectoryPoint Stop(const std::vector<robot::JointLimits>& limits, const JointState& state,
+                     HorizonOffset ahead) {
+  TrajectoryPoint point = {state.q, state.v, Eigen::VectorXd::Zero(state.q.size())};
+  for (Eigen::Index j = 0; j < state.q.size(); ++j) {
+    const double stop_s = std::abs(state.v(j)) / limits[static_cast<std::size_t>(j)].a_max;
+    const double share = ahead.seconds() < stop_s ? ahead.seconds() / stop_s : 1;
+    point.q(j) += state.v(j) * stop_s * (share - share * share / 2);
+    point.v(j) *= 1 - share;
+  }
+  return point;
+}
+
+// Where a robot is after `ahead` if it moves on as it does, as far as its limits let it.
+TrajectoryPoint MoveOn(const std::vector<robot::JointLimits>& limits, const JointState& state,
+                       HorizonOffset ahead) {
+  TrajectoryPoint point = {state.q, state.v, Eigen::VectorXd::Zero(state.q.size())};
+  for (Eigen::Index j = 0; j < state.q.size(); ++j) {
+    const robot::JointLimits& joint = limits[static_cast<std::size_t>(j)];
+    point.v(j) = std::clamp(state.v(j), -joint.v_max, joint.v_max);
+    const double q = state.q(j) + ahead.seconds() * point.v(j);
+    // One that is beyond a limit already may be there.
+    point.q(j) =
+        std::clamp(q, std::min(joint.q_min, state.q(j)), std::max(joint.q_max, state.q(j)));
+    if (point.q(j) != q) point.v(j) = 0;
+  }
+  return point;
+}
+
+TrajectoryPoint RestAt(const Eigen::VectorXd& q) {
+  return {q, Eigen::VectorXd::Zero(q.size()), Eigen::VectorXd::Zero(q.size())};
+}
+
+bool IsMoving(const JointState& state) { return state.v.cwiseAbs().maxCoeff() > kStill_rad_s; }
+
 bool IsFinite(const Trajectory& trajectory) {
   return trajectory.q.allFinite() && trajectory.v.allFinite();
 }
@@ -49,7 +86,8 @@ Replanner::Replanner(const Planner& planner, sdf::WorldModel& world,
   const auto require = [](bool condition, const std::string& what) {
     if (!condition) throw std::invalid_argument("replanner: " + what);
   };
-  require(std::isfinite(options.step_s) && options.step_s > 0, "step_s must be > 0");
+  require(std::isfinite(options.step_s) && options.step_s >= kLeastInterval_s,
+          "step_s must be at least 1e-6");
   require(std::isfinite(options.horizon_s), "horizon_s must be finite");
   const double steps = options.horizon_s / options.step_s;
   require(std::abs(steps - std::round(steps)) < 1e-6, "horizon_s must be a multiple of step_s");
@@ -59,7 +97,8 @@ Replanner::Replanner(const Planner& planner, sdf::WorldModel& world,
           "q_goal must be finite and as long as the robot has joints");
 }
 
-Replanner::Cycle Replanner::Run(EpisodeTime now, const JointState& state, HorizonOffset latency) {
+Replanner::Cycle Replanner::Run(EpisodeTime now, const JointState& state, HorizonOffset latency,
+                                const GoalWatch& goal) {
   Cycle cycle;
   const double begin_s = ThreadCpuSeconds();
   const std::shared_ptr<const sdf::DistanceField> field = world_.MakeField();
@@ -68,7 +107,8 @@ Replanner::Cycle Replanner::Run(EpisodeTime now, const JointState& state, Horizo
 
   EpisodeTime t_effect = now + latency;
   if (running_) t_effect = std::max(t_effect, running_->start);
-  const TimedPlan present = WithoutNewPlan(now, state);
+  const TrajectoryPoint expected = Expect(now, state, t_effect);
+  const TimedPlan present = running_ ? *running_ : Brake(t_effect, expected);
   const auto measure = [&](const TimedPlan& plan, EpisodeTime to) {
     return MeasureClearance(planner_.robot(), *field, plan.trajectory, plan.start, t_effect, to);
   };
@@ -76,12 +116,21 @@ Replanner::Cycle Replanner::Run(EpisodeTime now, const JointState& state, Horizo
   CycleRecord& record = cycle.record;
   TimedPlan shown = present;
   Clearance clearance;  // of what is shown
-  if (const auto request = MakeRequest(now, state, t_effect, *field)) {
-    const auto plan = [&](const PlanRequest& to_plan) {
-      PlanResult result = planner_.Plan(to_plan);
-      record.iterations += result.iterations;
-      return result;
-    };
+  const auto plan = [&](const PlanRequest& to_plan) {
+    PlanResult result = planner_.Plan(to_plan);
+    record.iterations += result.iterations;
+    return result;
+  };
+  // Whether a robot at its goal may stay as long as it is asked to, and find a way out then.
+  const auto may_stay = [&] {
+    if (!running_ || IsOffPlan(now, state)) return false;
+    const EpisodeTime until = StayUntil(now, t_effect, goal);
+    if (until <= t_effect || measure(present, until).first_contact) return false;
+    const TrajectoryPoint there = Sample(present.trajectory, until - present.start);
+    return !plan(NewHorizon(until, there.q, there.v, *field)).clearance.first_contact;
+  };
+  const auto request = MakeRequest(now, state, t_effect, expected, *field);
+  if (request && !may_stay()) {
     const auto show = [&](PlanResult result, EpisodeTime start) {
       record.status = ToString(result.status);
       record.cost = result.cost.total();
@@ -90,13 +139,11 @@ Replanner::Cycle Replanner::Run(EpisodeTime now, const JointState& state, Horizo
     };
     show(plan(*request), request->start);
     if (clearance.first_contact && running_) {
-      TrajectoryPoint there = {request->q_start, request->v_start, {}};
       if (request->start < t_effect) {
-        there = Sample(present.trajectory, t_effect - present.start);
-        PlanResult result = plan(NewHorizon(t_effect, there.q, there.v, *field));
+        PlanResult result = plan(NewHorizon(t_effect, expected.q, expected.v, *field));
         if (IsSafer(result.clearance, clearance)) show(std::move(result), t_effect);
       }
-      TimedPlan brake = Brake(t_effect, there);
+      TimedPlan brake = Brake(t_effect, expected);
       const Clearance braking = measure(brake, EndOf(brake));
       if (clearance.first_contact && IsSafer(braking, clearance) &&
           measure(present, EndOf(brake)).first_contact) {
@@ -127,22 +174,26 @@ Replanner::Cycle Replanner::Run(EpisodeTime now, const JointState& state, Horizo
   return cycle;
 }
 
-TimedPlan Replanner::WithoutNewPlan(EpisodeTime now, const JointState& state) const {
-  if (running_ && !IsOffPlan(now, state)) return *running_;
-  return {{Eigen::VectorXd::Zero(1), state.q, Eigen::VectorXd::Zero(state.q.size())}, now};
+TrajectoryPoint Replanner::Expect(EpisodeTime now, const JointState& state,
+                                  EpisodeTime t_effect) const {
+  const std::vector<robot::JointLimits>& limits = planner_.robot().limits();
+  if (!running_) return IsMoving(state) ? Stop(limits, state, t_effect - now) : RestAt(state.q);
+  if (IsOffPlan(now, state)) return MoveOn(limits, state, t_effect - now);
+  return Sample(running_->trajectory, t_effect - running_->start);
 }
 
 std::optional<PlanRequest> Replanner::MakeRequest(EpisodeTime now, const JointState& state,
                                                   EpisodeTime t_effect,
+                                                  const TrajectoryPoint& expected,
                                                   const sdf::DistanceField& field) const {
+  const PlanRequest anew = NewHorizon(t_effect, expected.q, expected.v, field);
   if (!running_) {
-    const Eigen::VectorXd rest = Eigen::VectorXd::Zero(state.q.size());
-    PlanRequest request = NewHorizon(now, state.q, rest, field);
+    if (IsMoving(state)) return anew;
+    PlanRequest request = NewHorizon(now, expected.q, expected.v, field);
     request.num_fixed = CountFixed(now, options_.step_s, t_effect);
-    if (num_states_ - request.num_fixed >= kMinFreeStates) return request;
-    return NewHorizon(t_effect, state.q, rest, field);
+    return num_states_ - request.num_fixed >= kMinFreeStates ? request : anew;
   }
-  if (IsOffPlan(now, state)) return NewHorizon(t_effect, state.q, state.v, field);
+  if (IsOffPlan(now, state)) return anew;
 
   const Trajectory& running = running_->trajectory;
   const int num_fixed = CountFixed(running_->start, options_.step_s, t_effect);
@@ -159,11 +210,34 @@ std::optional<PlanRequest> Replanner::MakeRequest(EpisodeTime now, const JointSt
   const bool is_free =
       !MeasureClearance(planner_.robot(), field, running, running_->start, t_effect, judged_to)
            .first_contact;
-  const double goal_error_rad =
-      (running.q.col(num_states_ - 1) - options_.q_goal).cwiseAbs().maxCoeff();
-  if (is_free && goal_error_rad <= kGoalTolerance_rad) return std::nullopt;
-  const TrajectoryPoint point = Sample(running, t_effect - running_->start);
-  return NewHorizon(t_effect, point.q, point.v, field);
+  const double goal_error_rad = (running.q.rightCols<1>() - options_.q_goal).cwiseAbs().maxCoeff();
+  if (is_free && goal_error_rad <= kPlannedGoalTolerance_rad) return std::nullopt;
+  return anew;
+}
+
+EpisodeTime Replanner::StayUntil(EpisodeTime now, EpisodeTime t_effect,
+                                 const GoalWatch& goal) const {
+  if (goal.dwelt()) return t_effect;
+  const EpisodeTime end = EndOf(*running_);
+  // Not seen at the goal, it lags its plan; or is kept away, and then nobody waits for its arrival.
+  const bool lags = t_effect >= end && now <= end + HorizonOffset(kArrivesLate_s);
+  if (!goal.arrived() && !lags) return t_effect;
+  const EpisodeTime until =
+      goal.arrived().value_or(std::max(now, end)) + HorizonOffset(goal.dwell_s());
+  return RestsAtGoal(*running_, t_effect, until) ? until : t_effect;
+}
+
+bool Replanner::RestsAtGoal(const TimedPlan& plan, EpisodeTime from, EpisodeTime to) const {
+  const Trajectory& motion = plan.trajectory;
+  std::vector<HorizonOffset> offsets = {from - plan.start, to - plan.start};
+  for (const double t_s : motion.t_s) {
+    if (t_s > offsets[0].seconds() && t_s < offsets[1].seconds()) offsets.emplace_back(t_s);
+  }
+  return std::all_of(offsets.begin(), offsets.end(), [&](HorizonOffset offset) {
+    const TrajectoryPoint point = Sample(motion, offset);
+    return (point.q - options_.q_goal).cwiseAbs().maxCoeff() <= kPlannedGoalTolerance_rad &&
+           point.v.cwiseAbs().maxCoeff() <= kGoalSpeed_rad_s;
+  });
 }
 
 PlanRequest Replanner::NewHorizon(EpisodeTime start, const Eigen::VectorXd& q,
@@ -180,24 +254,7 @@ PlanRequest Replanner::NewHorizon(EpisodeTime start, const Eigen::VectorXd& q,
 }
 
 TimedPlan Replanner::Brake(EpisodeTime start, const TrajectoryPoint& from) const {
-  int num_steps = 1;
-  for (int j = 0; j < planner_.robot().num_joints(); ++j) {
-    const double a_max = planner_.robot().limits()[static_cast<std::size_t>(j)].a_max;
-    const double steps = std::abs(from.v(j)) / (a_max * options_.step_s);
-    num_steps = std::max(num_steps, static_cast<int>(std::ceil(std::min(steps, 1e6))));
-  }
-  num_steps = std::min(num_steps, num_states_ - 1);
-  const double brake_s = num_steps * options_.step_s;
-  const Eigen::Index n = from.q.size();
-  Trajectory plan{Eigen::VectorXd(num_states_), Eigen::MatrixXd(n, num_states_),
-                  Eigen::MatrixXd(n, num_states_)};
-  for (int k = 0; k < num_states_; ++k) {
-    const double t_s = std::min(k, num_steps) * options_.step_s;
-    plan.t_s(k) = k * options_.step_s;
-    plan.q.col(k) = from.q + (t_s - t_s * t_s / (2 * brake_s)) * from.v;
-    plan.v.col(k) = (1 - t_s / brake_s) * from.v;
-  }
-  return {std::move(plan), start};
+  return {MakeBraking(planner_.robot().limits(), from, options_.step_s, num_states_), start};
 }
 
 bool Replanner::IsOffPlan(EpisodeTime now, const JointState& state) const {

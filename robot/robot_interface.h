@@ -16,9 +16,10 @@ class RobotInterface {
   /// The measured state now.
   virtual JointState Read() const = 0;
 
-  /// Follows `trajectory` from `start` on; until then, what was submitted before goes on. A start
-  /// in the past is allowed: the robot joins the trajectory where it is now. The robot's own limits
-  /// hold whatever is asked for: what it cannot follow, it follows late.
+  /// Follows `trajectory` from `start` on; until then, what was submitted before goes on, and
+  /// before the first one the robot is held. A start in the past is allowed: the robot joins the
+  /// trajectory where it is now. The robot's own limits hold whatever is asked for: what it cannot
+  /// follow, it follows late.
   /// @throws std::invalid_argument for a wrong shape or a value that is not finite.
   virtual void Submit(const Trajectory& trajectory, EpisodeTime start) = 0;
 

@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "sidestep/core/goal.h"
 #include "sidestep/planner/clearance.h"
 #include "sidestep/planner/registry.h"
 #include "tests/support/moving_ball_world.h"
@@ -20,10 +22,11 @@ const Eigen::Vector2d kStart(-1.1, 0.3), kGoal(1.2, -0.2);
 // A robot that does exactly what it was told, and the loop around a replanner.
 class Loop {
  public:
-  explicit Loop(MovingBallWorld& world, const std::string& planner = "gpmp")
+  explicit Loop(MovingBallWorld& world, const std::string& planner = "gpmp", double dwell_s = 0)
       : world_(world),
         planner_(MakePlanner(planner, arm_, Settings())),
-        replanner_(*planner_, world, {.horizon_s = 3, .step_s = 0.1, .q_goal = kGoal}) {}
+        replanner_(*planner_, world, {.horizon_s = 3, .step_s = 0.1, .q_goal = kGoal}),
+        goal_(kGoal, dwell_s) {}
 
   static PlannerSettings Settings() {
     PlannerSettings settings;
@@ -40,7 +43,11 @@ class Loop {
   // One cycle at `now`; its plan takes effect at once it may. Checks the splice.
   Replanner::Cycle Cycle(double now_s, double latency_s) {
     const EpisodeTime now(now_s);
-    Replanner::Cycle cycle = replanner_.Run(now, StateAt(now), HorizonOffset(latency_s));
+    for (; ticks_ < std::lround(1000 * now_s); ++ticks_) {
+      const JointState state = StateAt(EpisodeTime(0.001 * static_cast<double>(ticks_)));
+      goal_.Observe(state.t, state.q, state.v);
+    }
+    Replanner::Cycle cycle = replanner_.Run(now, StateAt(now), HorizonOffset(latency_s), goal_);
     EXPECT_EQ(cycle.plan.has_value(), cycle.record.accepted);
     if (cycle.plan) {
       ExpectContinuousSplice(*cycle.plan, cycle.record.t_effect);
@@ -59,6 +66,7 @@ class Loop {
 
   double min_clearance_m() const { return min_clearance_m_; }
   const std::optional<TimedPlan>& plan() const { return plan_; }
+  const GoalWatch& goal() const { return goal_; }
   void Push(const Eigen::Vector2d& q) {
     plan_.reset();
     rest_q_ = q;
@@ -88,6 +96,8 @@ class Loop {
   const robot::RobotModel arm_ = MakePlanarArm();
   std::unique_ptr<Planner> planner_;
   Replanner replanner_;
+  GoalWatch goal_;
+  long ticks_ = 0;  // shown to it
   std::optional<TimedPlan> plan_;
   EpisodeTime plan_from_;
   Eigen::VectorXd rest_q_ = kStart;
@@ -234,6 +244,121 @@ TEST(Replanner, BeginsANewHorizonWhereTheRobotIsWhenItIsFarFromItsPlan) {
   EXPECT_EQ(cycle.plan->trajectory.q.col(0), elsewhere);
 }
 
+// What a robot is found doing, and how it will be 0.1 s later. The arm: 2.5 rad, 2 rad/s,
+// 10 rad/s^2.
+struct Found {
+  const char* name;
+  Eigen::Vector2d q, v, q_later, v_later;
+};
+std::ostream& operator<<(std::ostream& stream, const Found& found) { return stream << found.name; }
+std::string NameOf(const ::testing::TestParamInfo<Found>& test) { return test.param.name; }
+
+class ReplannerOffPlan : public ::testing::TestWithParam<Found> {};
+
+TEST_P(ReplannerOffPlan, BeginsWhereTheRobotWillBeWhenTheNewPlanTakesEffect) {
+  const Found& found = GetParam();
+  MovingBallWorld world = NothingThere();
+  const auto planner = MakePlanner("straight_line", MakePlanarArm(), {});
+  Replanner replanner(*planner, world, {.horizon_s = 3, .step_s = 0.1, .q_goal = kGoal});
+  replanner.Run(EpisodeTime(0), {EpisodeTime(0), kStart, Eigen::Vector2d::Zero()},
+                HorizonOffset(0.1), GoalWatch(kGoal, 0));
+  const EpisodeTime now(1), effect = now + HorizonOffset(0.1);
+  const auto cycle =
+      replanner.Run(now, {now, found.q, found.v}, HorizonOffset(0.1), GoalWatch(kGoal, 0));
+  ASSERT_TRUE(cycle.plan);
+  EXPECT_EQ(cycle.plan->start, effect);
+  EXPECT_LT((cycle.plan->trajectory.q.col(0) - found.q_later).norm(), 1e-12);
+  EXPECT_LT((cycle.plan->trajectory.v.col(0) - found.v_later).norm(), 1e-12);
+  // A robot that did just that follows the new plan, and needs no other one.
+  const auto next = replanner.Run(effect, {effect, found.q_later, found.v_later},
+                                  HorizonOffset(0.1), GoalWatch(kGoal, 0));
+  EXPECT_EQ(next.record.plan_start, effect);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Found, ReplannerOffPlan,
+    ::testing::Values(Found{"AtRest", {0.5, 0.9}, {0, 0}, {0.5, 0.9}, {0, 0}},
+                      Found{"Moving", {0.5, 0.9}, {1.5, -1}, {0.65, 0.8}, {1.5, -1}},
+                      Found{"UpToALimit", {2.45, 0.9}, {1.5, -1}, {2.5, 0.8}, {0, -1}},
+                      Found{"DownToALimit", {0.5, -2.45}, {1.5, -1}, {0.65, -2.5}, {1.5, 0}},
+                      Found{"BeyondALimit", {2.6, 0.9}, {1.5, -1}, {2.6, 0.8}, {0, -1}},
+                      Found{
+                          "BackFromBeyondALimit", {2.6, 0.9}, {-1.5, -1}, {2.45, 0.8}, {-1.5, -1}},
+                      Found{"FasterThanItMay", {0.5, 0.9}, {3, -1}, {0.7, 0.8}, {2, -1}}),
+    NameOf);
+
+class ReplannerWithoutAPlan : public ::testing::TestWithParam<Found> {};
+
+TEST_P(ReplannerWithoutAPlan, BeginsWhereTheRobotStopsMeanwhile) {
+  const Found& found = GetParam();
+  MovingBallWorld world = NothingThere();
+  const auto planner = MakePlanner("straight_line", MakePlanarArm(), {});
+  Replanner replanner(*planner, world, {.horizon_s = 3, .step_s = 0.1, .q_goal = kGoal});
+  const EpisodeTime now(0);
+  const auto cycle =
+      replanner.Run(now, {now, found.q, found.v}, HorizonOffset(0.1), GoalWatch(kGoal, 0));
+  ASSERT_TRUE(cycle.plan);
+  const TrajectoryPoint there =
+      Sample(cycle.plan->trajectory, EpisodeTime(0.1) - cycle.plan->start);
+  EXPECT_LT((there.q - found.q_later).norm(), 1e-12);
+  EXPECT_LT((there.v - found.v_later).norm(), 1e-12);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Found, ReplannerWithoutAPlan,
+    ::testing::Values(Found{"AtRest", {0.5, 0.9}, {0, 0}, {0.5, 0.9}, {0, 0}},
+                      Found{"AtRestButForNoise", {0.5, 0.9}, {0.002, -0.001}, {0.5, 0.9}, {0, 0}},
+                      // 1.5 rad/s less 10 rad/s^2 leave 0.5; 0.6 rad/s are gone after 0.06 s.
+                      Found{"Moving", {0.5, 0.9}, {1.5, -0.6}, {0.6, 0.882}, {0.5, 0}}),
+    NameOf);
+
+// The arm arrives and something comes: at the tip at `passes_s`, touching it first 0.14 s earlier.
+struct Passing {
+  const char* name;
+  double dwell_s, passes_s;
+  bool stays;  ///< for dwell_s after its arrival
+};
+std::ostream& operator<<(std::ostream& stream, const Passing& p) { return stream << p.name; }
+
+class ReplannerAtItsGoal : public ::testing::TestWithParam<Passing> {};
+
+TEST_P(ReplannerAtItsGoal, StaysAsLongAsAskedAndSafe) {
+  MovingBallWorld world = NothingThere();
+  Loop loop(world, "gpmp", GetParam().dwell_s);
+  const Eigen::Vector3d p_WTip = MakePlanarArm().ComputeSphereCenters(kGoal, false).p_WS.col(5);
+  const auto see = [&] {
+    world.Replace(p_WTip + Eigen::Vector3d(0, GetParam().passes_s, 0), {0, -1, 0}, 0.1);
+  };
+  double left_s = 0;  // when it was first away from where it had arrived
+  for (int i = 0; i < 90; ++i) {
+    if (i == 31) see();
+    loop.Cycle(0.1 * i, 0.1);
+    const JointState state = loop.StateAt(EpisodeTime(0.1 * i));
+    if (i > 31 && left_s == 0 && !IsAtGoal(state.q, state.v, kGoal)) left_s = 0.1 * i;
+  }
+  ASSERT_TRUE(loop.goal().dwelt());
+  EXPECT_GT(loop.min_clearance_m(), 0.01);
+  EXPECT_GT(left_s, 3.1) << "it does step aside";
+  EXPECT_EQ(loop.goal().arrived()->seconds() < 3.1, GetParam().stays) << left_s;
+}
+
+INSTANTIATE_TEST_SUITE_P(Comes, ReplannerAtItsGoal,
+                         ::testing::Values(Passing{"LongAfterTheDwell", 1.0, 5.5, true},
+                                           Passing{"AfterTheDwell", 1.0, 5.0, true},
+                                           Passing{"WithinTheDwell", 2.0, 4.6, false},
+                                           // It would have to be gone 0.1 s after the dwell's end.
+                                           Passing{"TooSoonAfterTheDwell", 1.5, 4.7, false}),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+TEST(Replanner, DoesNotStayForADwellThatNobodyAsksFor) {
+  MovingBallWorld world = NothingThere();
+  Loop loop(world);
+  for (int i = 0; i <= 31; ++i) loop.Cycle(0.1 * i, 0.1);
+  const Eigen::Vector3d p_WTip = MakePlanarArm().ComputeSphereCenters(kGoal, false).p_WS.col(5);
+  world.Replace(p_WTip + Eigen::Vector3d(0, 5.5, 0), {0, -1, 0}, 0.1);
+  EXPECT_TRUE(loop.Cycle(3.2, 0.1).plan);
+}
+
 TEST(Replanner, RecordsWhatItSawAndFound) {
   MovingBallWorld world = CrossingBall();
   Loop loop(world);
@@ -259,7 +384,8 @@ TEST(Replanner, RefusesOptionsOutOfRange) {
                                    {3, 0.13, kGoal},
                                    {0.2, 0.1, kGoal},
                                    {-3, 0.1, kGoal},
-                                   {3, 0.1, Eigen::VectorXd::Zero(3)}};
+                                   {3, 0.1, Eigen::VectorXd::Zero(3)},
+                                   {3e-200, 1e-200, kGoal}};
   for (const ReplannerOptions& options : kBad) {
     EXPECT_THROW(Replanner(*planner, world, options), std::invalid_argument);
   }
