@@ -6,13 +6,14 @@
 #include <deque>
 #include <exception>
 #include <iterator>
+#include <limits>
 #include <stdexcept>
 
-#include "sidestep/bench/metrics/motion_metrics.h"
 #include "sidestep/bench/metrics/registry.h"
 #include "sidestep/bench/planner_settings.h"
 #include "sidestep/bench/sensor_watch.h"
 #include "sidestep/core/cpu_time.h"
+#include "sidestep/core/goal.h"
 #include "sidestep/planner/registry.h"
 #include "sidestep/planner/replanner.h"
 #include "sidestep/sdf/world_model.h"
@@ -38,6 +39,24 @@ void AppendChanges(const std::vector<std::uint8_t>& before, const std::vector<st
   }
 }
 
+record::AskedLimits LimitsAskedFor(const scenarios::Scenario& scenario,
+                                   const robot::RobotModel& robot) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  const double v_scale = scenario.velocity_limits ? scenario.velocity_scale : kNone;
+  const double a_scale = scenario.acceleration_limits ? scenario.acceleration_scale : kNone;
+  const Eigen::Index n = robot.num_joints();
+  record::AskedLimits asked = {Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd(n),
+                               Eigen::VectorXd(n)};
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const robot::JointLimits& joint = robot.limits()[static_cast<std::size_t>(j)];
+    asked.v_max(j) = v_scale * joint.v_max;
+    asked.a_max(j) = a_scale * joint.a_max;
+    asked.jerk_max(j) = joint.jerk_max;
+    asked.torque_rate_max(j) = joint.torque_rate_max;
+  }
+  return asked;
+}
+
 record::Recording BeginRecording(const scenarios::Scenario& scenario,
                                  const robot::RobotModel& robot, const EpisodeWorld& world) {
   record::Recording recording;
@@ -53,10 +72,12 @@ record::Recording BeginRecording(const scenarios::Scenario& scenario,
   recording.obstacles = world.obstacles;
   recording.q_start = scenario.q_start;
   recording.q_goal = scenario.q_goal;
+  recording.dwell_s = scenario.dwell_s;
   recording.v_max.resize(robot.num_joints());
   for (int i = 0; i < robot.num_joints(); ++i) {
     recording.v_max(i) = robot.limits()[static_cast<std::size_t>(i)].v_max;
   }
+  recording.limits = LimitsAskedFor(scenario, robot);
   return recording;
 }
 
@@ -95,6 +116,7 @@ class Loop {
         model_(sdf::MakeWorldModel(MakeWorldModelOptions(
             scenario, scenario.epsilon_m + robot.largest_sphere_radius_m(), world))),
         replanner_(*planner_, *model_, {scenario.horizon_s, scenario.step_s, scenario.q_goal}),
+        goal_(scenario.q_goal, scenario.dwell_s),
         end_s_(kHorizons * scenario.horizon_s) {
     result_.recording = BeginRecording(scenario, robot, world);
     for (const char* const stage : kStages) result_.times[stage];
@@ -167,10 +189,8 @@ class Loop {
   void KeepTicks() {
     record::Recording& recording = result_.recording;
     for (ControlSample& tick : world_.robot->TakeControlLog()) {
-      if (!reached_ && AtGoal(tick.q, tick.v, recording.q_goal)) {
-        reached_ = true;
-        end_s_ = std::min(end_s_, tick.t.seconds() + kAfterGoal);
-      }
+      if (tick.t.seconds() <= end_s_ + kTimeEpsilon) goal_.Observe(tick.t, tick.q, tick.v);
+      if (goal_.dwelt()) end_s_ = std::min(end_s_, goal_.dwelt()->seconds() + kAfterGoal);
       if (tick.t.seconds() <= end_s_ + kTimeEpsilon) recording.control.push_back(std::move(tick));
     }
   }
@@ -225,7 +245,7 @@ class Loop {
     }
     if (!sensor_.has_seen()) return;  // nothing is known yet
     planner::Replanner::Cycle cycle =
-        replanner_.Run(EpisodeTime(t_s), world_.robot->Read(), HorizonOffset(latency_s));
+        replanner_.Run(EpisodeTime(t_s), world_.robot->Read(), HorizonOffset(latency_s), goal_);
     if (cycle.plan) pending_.push_back({*cycle.plan, t_s + latency_s});
     result_.recording.cycles.push_back(std::move(cycle.record));
     KeepTimes(cycle);
@@ -252,7 +272,7 @@ class Loop {
     for (const Metric& metric : Metrics()) {
       recording.metrics[metric.name] = metric.compute(recording);
     }
-    result_.outcome = is_aborted_ ? Outcome::kAborted : Judge(recording, reached_);
+    result_.outcome = is_aborted_ ? Outcome::kAborted : Judge(recording, goal_.dwelt().has_value());
     recording.header["outcome"] = ToString(result_.outcome);
     if (!is_aborted_ && recording.metrics.at("plans_accepted") == 0) {
       result_.reason = WhyNoPlan(recording);
@@ -268,6 +288,7 @@ class Loop {
   std::unique_ptr<planner::Planner> planner_;
   std::unique_ptr<sdf::WorldModel> model_;
   planner::Replanner replanner_;
+  GoalWatch goal_;
 
   std::deque<Pending> pending_;
   std::vector<std::uint8_t> last_cells_;  // filled by the latest scan
@@ -276,7 +297,6 @@ class Loop {
   double next_cycle_s_ = 0;
   double end_s_;
   double sense_s_ = 0;
-  bool reached_ = false;
   bool is_aborted_ = false;
   EpisodeResult result_;
 };

@@ -12,6 +12,12 @@
 
 namespace sidestep::record {
 
+/// What a motion was to keep to, as asked for: the robot's limits times the scenario's scales; of
+/// shape n, infinite where there is no limit.
+struct AskedLimits {
+  Eigen::VectorXd v_max, a_max, jerk_max, torque_rate_max;  ///< rad/s, rad/s^2, rad/s^3, N m/s
+};
+
 /// A named object as a sensor reported it.
 struct SeenObject {
   std::string id;
@@ -41,7 +47,9 @@ struct Recording {
   std::vector<std::string> obstacles;  ///< mocap bodies, as in the MJCF
   Eigen::VectorXd q_start;
   Eigen::VectorXd q_goal;
-  Eigen::VectorXd v_max;               ///< the robot's velocity limits, rad/s
+  double dwell_s = 0;     ///< how long the arm had to stay at its goal
+  Eigen::VectorXd v_max;  ///< the robot's velocity limits, rad/s
+  AskedLimits limits;
   std::vector<ControlSample> control;  ///< at the control rate
   std::vector<TruthSample> truth;      ///< at 100 Hz
   std::vector<ObservationRecord> observations;

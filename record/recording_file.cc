@@ -13,7 +13,7 @@
 namespace sidestep::record {
 namespace {
 
-const SealedFormat kFormat = {"sidestep trace", 1};
+const SealedFormat kFormat = {"sidestep trace", 2};
 
 using Doubles = Hdf5Array<double>;
 using Integers = Hdf5Array<std::int64_t>;
@@ -35,11 +35,27 @@ bool Increase(const std::vector<double>& times) {
   return std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) == times.end();
 }
 
+struct LimitColumn {
+  const char* path;
+  Eigen::VectorXd AskedLimits::*member;
+  const char* unit;
+};
+constexpr LimitColumn kLimitColumns[] = {
+    {"limits/v_max", &AskedLimits::v_max, "rad/s"},
+    {"limits/a_max", &AskedLimits::a_max, "rad/s^2"},
+    {"limits/jerk_max", &AskedLimits::jerk_max, "rad/s^3"},
+    {"limits/torque_rate_max", &AskedLimits::torque_rate_max, "N m/s"},
+};
+
 void CheckRecording(const Recording& recording) {
   const auto n = static_cast<Eigen::Index>(recording.joints.size());
   Require(recording.q_start.size() == n, "q_start needs one number a joint");
   Require(recording.q_goal.size() == n, "q_goal needs one number a joint");
   Require(recording.v_max.size() == n, "v_max needs one number a joint");
+  for (const LimitColumn& column : kLimitColumns) {
+    Require((recording.limits.*column.member).size() == n,
+            std::string(column.path) + " needs one number a joint");
+  }
   Require(Increase(Times(recording.control)), "the times of control must increase");
   Require(Increase(Times(recording.truth)), "the times of truth must increase");
   Require(Increase(Times(recording.observations)), "the times of observations must increase");
@@ -154,7 +170,12 @@ void WriteProblem(Hdf5ImageWriter& file, const Recording& recording) {
   };
   write_joints("q_start", recording.q_start, "rad");
   write_joints("q_goal", recording.q_goal, "rad");
+  file.Write("dwell", Doubles{{}, {recording.dwell_s}}, "s");
   write_joints("v_max", recording.v_max, "rad/s");
+  file.MakeGroup("limits");
+  for (const LimitColumn& column : kLimitColumns) {
+    write_joints(column.path, recording.limits.*column.member, column.unit);
+  }
 }
 
 struct ControlColumn {
@@ -385,7 +406,12 @@ void ReadProblem(const Hdf5ImageReader& file, Recording* recording) {
   };
   recording->q_start = read_joints("q_start");
   recording->q_goal = read_joints("q_goal");
+  recording->dwell_s = file.ReadDoubles("dwell", {}).values.front();
+  if (!(recording->dwell_s >= 0)) file.Fail("dwell", "must be >= 0");
   recording->v_max = read_joints("v_max");
+  for (const LimitColumn& column : kLimitColumns) {
+    recording->limits.*column.member = read_joints(column.path);
+  }
 }
 
 void ReadControl(const Hdf5ImageReader& file, Recording* recording) {

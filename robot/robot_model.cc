@@ -34,6 +34,7 @@ JointLimits ReadLimits(const YamlReader& map) {
   limits.a_max = positive_or_infinite("a_max_rad_s2");
   limits.jerk_max = positive_or_infinite("jerk_max_rad_s3");
   limits.torque_max = positive_or_infinite("torque_max_n_m");
+  limits.torque_rate_max = positive_or_infinite("torque_rate_max_n_m_s");
   if (!(limits.q_min < limits.q_max)) {
     map.Fail("q_min_rad", "must be < q_max_rad, is " + map.GetString("q_min_rad"));
   }

@@ -9,13 +9,15 @@
 
 namespace sidestep::robot {
 
-/// Limits of one joint (rad, rad/s, rad/s^2, rad/s^3, N m). Infinite where robot.yaml gives none.
+/// Limits of one joint (rad, rad/s, rad/s^2, rad/s^3, N m, N m/s). Infinite where robot.yaml gives
+/// none.
 struct JointLimits {
   double q_min = 0, q_max = 0;
   double v_max = 0;
   double a_max = 0;
   double jerk_max = 0;
   double torque_max = 0;
+  double torque_rate_max = 0;
 };
 
 /// One row of a classic (distal) Denavit-Hartenberg table: A_i = Rz(q_i + theta) Tz(d) Tx(a)

@@ -114,6 +114,7 @@ struct Scenario {
       mount;  ///< static box the robot stands on: its mount links may touch it; may be empty
   std::string start_name, goal_name;  ///< empty when given as joints
   Eigen::VectorXd q_start, q_goal;    ///< filled when given as joints; else looked up by the name
+  double dwell_s = 0;  ///< how long to stay at the goal for it to be reached; at most the horizon
 
   double horizon_s = 0;
   double step_s = 0;

@@ -21,6 +21,7 @@ constexpr double kMinCell_m = 0.001, kMaxCell_m = 10;
 // Bounds against slips such as milliseconds given as seconds; generous for any arm.
 constexpr double kMaxHorizon = 60, kMaxRateHz = 1000;
 constexpr int kMaxStates = 1001;
+constexpr double kLeastStep_s = 0.001;  // a control tick
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kShortestLeg_s = 0.01;
 // Objects' fields are padded for it on all sides.
@@ -52,6 +53,8 @@ void ReadTask(const YamlReader& top, Scenario& scenario) {
   const YamlReader map = top.GetMap("task");
   ReadConfiguration(map, "start", scenario.start_name, scenario.q_start, scenario);
   ReadConfiguration(map, "goal", scenario.goal_name, scenario.q_goal, scenario);
+  scenario.dwell_s = map.Has("dwell_s") ? map.GetNonNegative("dwell_s") : 0;
+  scenario.lines["task.dwell_s"] = map.Line("dwell_s");
   map.CheckNoUnknownKeys();
 }
 
@@ -65,7 +68,11 @@ void ReadHorizon(const YamlReader& top, Scenario& scenario) {
     map.Fail("step_s", "must divide duration_s into at least 4 whole steps");
   }
   if (std::round(steps) >= kMaxStates) map.Fail("step_s", "makes more than 1000 steps");
+  if (scenario.step_s < kLeastStep_s) map.Fail("step_s", "must be at least 0.001 s");
   map.CheckNoUnknownKeys();
+  if (scenario.dwell_s > scenario.horizon_s) {
+    throw WrongValue(scenario, "task.dwell_s", "must not exceed the horizon");
+  }
 }
 
 void ReadWorkspace(const YamlReader& top, Scenario& scenario) {

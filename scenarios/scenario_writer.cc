@@ -113,6 +113,7 @@ std::string RobotText(const Scenario& scenario) {
          (scenario.mount.empty() ? "" : "  mount: " + scenario.mount + "\n") +
          "task:\n  start: " + configuration(scenario.start_name, scenario.q_start) +
          "\n  goal: " + configuration(scenario.goal_name, scenario.q_goal) +
+         "\n  dwell_s: " + Number(scenario.dwell_s) +
          "\nhorizon: {duration_s: " + Number(scenario.horizon_s) +
          ", step_s: " + Number(scenario.step_s) + "}\n";
 }

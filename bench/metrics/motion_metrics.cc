@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sidestep/core/goal.h"
 #include "sidestep/planner/gp_trajectory.h"
 
 namespace sidestep::bench {
@@ -12,18 +13,22 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kGpStep = 0.1;  // s, the paper's
 
-}  // namespace
-
-bool AtGoal(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const Eigen::VectorXd& q_goal) {
-  return (q - q_goal).cwiseAbs().maxCoeff() <= kGoalTolerance &&
-         v.cwiseAbs().maxCoeff() <= kGoalSpeed;
+GoalWatch WatchGoal(const record::Recording& recording) {
+  GoalWatch goal(recording.q_goal, recording.dwell_s);
+  for (const ControlSample& tick : recording.control) goal.Observe(tick.t, tick.q, tick.v);
+  return goal;
 }
 
+}  // namespace
+
 double TimeToGoal(const record::Recording& recording) {
-  for (const ControlSample& tick : recording.control) {
-    if (AtGoal(tick.q, tick.v, recording.q_goal)) return tick.t.seconds();
-  }
-  return kNaN;
+  const GoalWatch goal = WatchGoal(recording);
+  return goal.dwelt() ? goal.arrived()->seconds() : kNaN;
+}
+
+double TimeToDwell(const record::Recording& recording) {
+  const GoalWatch goal = WatchGoal(recording);
+  return goal.dwelt() ? goal.dwelt()->seconds() : kNaN;
 }
 
 double GoalError(const record::Recording& recording) {

@@ -6,15 +6,11 @@
 
 namespace sidestep::bench {
 
-/// The goal is reached when no joint is further than this from it ...
-inline constexpr double kGoalTolerance = 0.02;  // rad
-/// ... and none is faster than this.
-inline constexpr double kGoalSpeed = 0.05;  // rad/s
-
-bool AtGoal(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const Eigen::VectorXd& q_goal);
-
-/// The first control tick at the goal [s]; NaN if there is none.
+/// When the arm arrived at the goal for the stay that made it count as reached (core/goal.h) [s];
+/// NaN if it was not.
 double TimeToGoal(const record::Recording& recording);
+/// When that stay had lasted as long as asked, dwell_s [s].
+double TimeToDwell(const record::Recording& recording);
 /// max_i |q_i - q_goal_i| at the last tick [rad].
 double GoalError(const record::Recording& recording);
 /// The GP prior cost (Qc = I) of the measured motion, sampled every 0.1 s from the start.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -66,6 +67,51 @@ TEST_F(Episode, EndsHalfASecondAfterTheGoal) {
   const EpisodeResult result = Run();
   EXPECT_NEAR(result.recording.control.back().t.seconds(),
               result.recording.metrics.at("time_to_goal_s") + 0.5, 0.0015);
+}
+
+TEST_F(Episode, ReachesTheGoalWhenTheArmHasStayedThereAsLongAsAsked) {
+  scenario_.dwell_s = 0.3;
+  const EpisodeResult result = Run();
+  EXPECT_EQ(result.outcome, Outcome::kGoal);
+  const double goal_s = result.recording.metrics.at("time_to_goal_s");
+  const double dwell_s = result.recording.metrics.at("time_to_dwell_s");
+  EXPECT_NEAR(dwell_s, goal_s + 0.3, 1e-9);
+  EXPECT_NEAR(result.recording.control.back().t.seconds(), dwell_s + 0.5, 0.0015);
+}
+
+TEST_F(Episode, InWhichTheArmCannotStayLongEnoughIsATimeout) {
+  scenario_.dwell_s = 2.0;  // the episode lasts 4 s, and the motion needs most of 2 s
+  scenario_.moving_obstacles.clear();
+  world_.moves = false;
+  scenario_.q_start = scenario_.q_goal;
+  EXPECT_EQ(Run().outcome, Outcome::kGoal);
+  world_.moves = true;
+  scenario_.q_start = MakeScenario().q_start;
+  scenario_.horizon_s = 2.2;
+  scenario_.dwell_s = 2.3;
+  EXPECT_EQ(Run().outcome, Outcome::kTimeout);
+}
+
+TEST_F(Episode, RecordsTheLimitsThatWereAskedFor) {
+  scenario_.velocity_scale = 0.6;
+  scenario_.acceleration_limits = false;
+  const record::AskedLimits limits = Run().recording.limits;
+  EXPECT_EQ(limits.v_max, Eigen::Vector2d(0.6 * 2, 0.6 * 2));
+  for (const Eigen::VectorXd* none : {&limits.a_max, &limits.jerk_max, &limits.torque_rate_max}) {
+    EXPECT_EQ(none->size(), 2);
+    EXPECT_TRUE((none->array() == std::numeric_limits<double>::infinity()).all());
+  }
+}
+
+TEST_F(Episode, TellsWhenPlansTakeMoreThanWasAskedFor) {
+  scenario_.moving_obstacles.clear();
+  scenario_.velocity_scale = 0.2;
+  const record::Recording recording = Run().recording;
+  ASSERT_FALSE(recording.cycles.empty());
+  EXPECT_EQ(recording.cycles[0].status, "over_limits");
+  EXPECT_TRUE(recording.cycles[0].accepted);
+  EXPECT_GT(recording.metrics.at("planned_velocity_use"), 1.5);
+  EXPECT_GT(recording.metrics.at("commanded_velocity_use"), 1.5);
 }
 
 TEST_F(Episode, OfARobotThatDoesNotMoveEndsAtTwiceTheHorizon) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <string>
 
@@ -18,7 +19,10 @@ record::Recording SmoothReach(double end_s = 1.5) {
   record::Recording recording;
   recording.q_start = Eigen::VectorXd::Zero(1);
   recording.q_goal = Eigen::VectorXd::Ones(1);
+  recording.dwell_s = 0.2;
   recording.v_max = Eigen::VectorXd::Constant(1, 2.0);
+  recording.limits = {Eigen::VectorXd::Constant(1, 1.25), Eigen::VectorXd::Constant(1, 8.0),
+                      Eigen::VectorXd::Constant(1, 1e4), Eigen::VectorXd::Constant(1, 20.0)};
   for (int i = 0; i <= std::lround(1000 * end_s); ++i) {
     const double t = 1e-3 * i, s = std::min(t, 1.0);
     ControlSample tick;
@@ -28,7 +32,7 @@ record::Recording SmoothReach(double end_s = 1.5) {
     tick.a_command = Eigen::VectorXd::Constant(1, t < 1.0 ? 6 - 12 * t : 0);
     tick.q = tick.q_command - Eigen::VectorXd::Constant(1, 1e-3);
     tick.v = tick.v_command;
-    tick.torque = Eigen::VectorXd::Zero(1);
+    tick.torque = Eigen::VectorXd::Constant(1, -5 * s);
     recording.control.push_back(tick);
   }
   for (int i = 1; i <= std::lround(100 * end_s); ++i) {
@@ -43,6 +47,15 @@ record::Recording SmoothReach(double end_s = 1.5) {
   }
   recording.cycles.resize(3);
   recording.cycles[1].accepted = true;
+  // From rest to rest over 1 rad in 1 s, from the moment of effect on; faster before that, and in a
+  // plan that was not given to the robot.
+  CycleRecord& cycle = recording.cycles[1];
+  cycle.plan_start = EpisodeTime(0.2);
+  cycle.t_effect = EpisodeTime(0.3);
+  cycle.plan = {Eigen::Vector3d(0, 0.1, 1.1), Eigen::RowVector3d(0, 1, 2),
+                Eigen::RowVector3d::Zero()};
+  recording.cycles[2].plan = recording.cycles[1].plan;
+  recording.cycles[2].plan.q *= 9;
 
   // One obstacle runs along x at 1 m/s and stops at 1 s; another stands far away. From 0.1 s on it
   // is seen 1 cm too high and expected to go on.
@@ -81,12 +94,22 @@ constexpr Expected kKnown[] = {
     {"min_clearance_m", 0.05, 1e-12},
     // Within 0.02 rad and 0.05 rad/s: the speed decides, 6t - 6t^2 = 0.05 at t = 0.99159.
     {"time_to_goal_s", 0.992, 1e-9},
+    {"time_to_dwell_s", 1.192, 1e-9},
     {"goal_error_rad", 1e-3, 1e-12},
     // The integral of a^2 / 2 over the second, 6, is what the cubic's GP cost is.
     {"gp_cost", 6, 1e-6},
     {"jerk_rms", 12, 1e-6},
     {"tracking_error_rad", 1e-3, 1e-12},
     {"velocity_use", 0.75, 1e-12},
+    // 1.5 rad/s half way, 6 rad/s^2 at the ends, 12 rad/s^3 throughout.
+    {"planned_velocity_use", 1.2, 1e-12},
+    {"planned_acceleration_use", 0.75, 1e-12},
+    {"planned_jerk_use", 12e-4, 1e-12},
+    {"commanded_velocity_use", 1.2, 1e-12},
+    {"commanded_acceleration_use", 0.75, 1e-12},
+    // At the end, the last 5.988 rad/s^2 are taken back within a tick.
+    {"commanded_jerk_use", 0.5988, 1e-9},
+    {"commanded_torque_rate_use", 0.25, 1e-9},
     {"replans", 3, 0},
     {"plans_accepted", 1, 0},
     // The height alone, until the ball stops: then also how far it was expected to go on.
@@ -126,6 +149,27 @@ TEST(Metrics, HaveEachAKnownAnswerThatIsNotTrivial) {
 
 TEST(Metrics, ThatLookBeyondTheEndOfARecordingAreNotANumber) {
   EXPECT_TRUE(std::isnan(Find("prediction_error_2000ms_m").compute(SmoothReach())));
+}
+
+TEST(Metrics, DoNotCountAGoalThatTheArmDidNotStayAtAsLongAsAsked) {
+  record::Recording recording = SmoothReach();
+  recording.dwell_s = 0.6;
+  EXPECT_TRUE(std::isnan(Find("time_to_goal_s").compute(recording)));
+  EXPECT_TRUE(std::isnan(Find("time_to_dwell_s").compute(recording)));
+}
+
+TEST(Metrics, OfLimitsThatNobodyAskedForAreNotANumber) {
+  record::Recording recording = SmoothReach();
+  for (Eigen::VectorXd* limit : {&recording.limits.v_max, &recording.limits.a_max,
+                                 &recording.limits.jerk_max, &recording.limits.torque_rate_max}) {
+    limit->setConstant(std::numeric_limits<double>::infinity());
+  }
+  for (const char* name :
+       {"planned_velocity_use", "planned_acceleration_use", "planned_jerk_use",
+        "commanded_velocity_use", "commanded_acceleration_use", "commanded_jerk_use",
+        "commanded_torque_rate_use"}) {
+    EXPECT_TRUE(std::isnan(Find(name).compute(recording))) << name;
+  }
 }
 
 TEST(Metrics, OfAnEmptyRecordingAreZeroOrNotANumberAndNeverThrow) {

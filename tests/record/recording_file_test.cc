@@ -28,7 +28,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-const SealedFormat kFormat = {"sidestep trace", 1};
+const SealedFormat kFormat = {"sidestep trace", 2};
 constexpr std::size_t kHeadBytes = 512;
 
 // A folder of its own for each test, gone afterwards.
@@ -148,7 +148,12 @@ void ExpectEqual(const Recording& a, const Recording& b) {
   EXPECT_EQ(a.obstacles, b.obstacles);
   EXPECT_EQ(a.q_start, b.q_start);
   EXPECT_EQ(a.q_goal, b.q_goal);
+  EXPECT_EQ(a.dwell_s, b.dwell_s);
   EXPECT_EQ(a.v_max, b.v_max);
+  EXPECT_EQ(a.limits.v_max, b.limits.v_max);
+  EXPECT_EQ(a.limits.a_max, b.limits.a_max);
+  EXPECT_EQ(a.limits.jerk_max, b.limits.jerk_max);
+  EXPECT_EQ(a.limits.torque_rate_max, b.limits.torque_rate_max);
   ExpectEqual(a.control, b.control);
   ExpectEqual(a.truth, b.truth);
   ExpectEqual(a.cycles, b.cycles);
@@ -224,6 +229,7 @@ TEST_F(RecordingFile, RefusesToWriteARecordingThatDisagreesWithItself) {
   const std::function<void(Recording&)> faults[] = {
       [](Recording& r) { r.q_start.resize(3); },
       [](Recording& r) { r.v_max.resize(0); },
+      [](Recording& r) { r.limits.jerk_max.resize(1); },
       [](Recording& r) { r.control[7].torque.resize(1); },
       [](Recording& r) { r.control[7].t = r.control[8].t; },
       [](Recording& r) { r.truth[1].X_WO.pop_back(); },
@@ -250,10 +256,10 @@ TEST_F(RecordingFile, SaysWhatIsWrongWithAFileThatIsNone) {
 }
 
 TEST_F(RecordingFile, NamesTheVersionItCannotRead) {
-  WriteSealedFile(Path("new.h5"), {"sidestep trace", 2}, {});
+  WriteSealedFile(Path("new.h5"), {"sidestep trace", 3}, {});
   EXPECT_EQ(Refusal(Path("new.h5")),
             Path("new.h5") +
-                ": is of version 2 of the sidestep trace format; this program reads version 1");
+                ": is of version 3 of the sidestep trace format; this program reads version 2");
 }
 
 TEST_F(RecordingFile, IsRefusedWhereverItIsCut) {
@@ -279,6 +285,7 @@ Recording SmallRecording() {
   Recording small;
   small.joints = {"hinge"};
   small.q_start = small.q_goal = small.v_max = Eigen::VectorXd::Ones(1);
+  small.limits = {small.v_max, small.v_max, small.v_max, small.v_max};
   return small;
 }
 
@@ -368,6 +375,17 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"MissingGroup", "cycles", {}, {}, "cycles/t: is missing"},
         Fault{"OtherType", "cycles/status", {3}, {1, 2, 3}, "cycles/status: does not hold texts"},
         Fault{"OtherRank", "q_goal", {1, 2}, {1, 2}, "q_goal: has shape 1 x 2, expected shape 2"},
+        Fault{"DwellMissing", "dwell", {}, {}, "dwell: is missing"},
+        Fault{"DwellOfManyNumbers",
+              "dwell",
+              {2},
+              {0, 1},
+              "dwell: has shape 2, expected a single value"},
+        Fault{"LimitsOfAnotherArm",
+              "limits/a_max",
+              {3},
+              {1, 2, 3},
+              "limits/a_max: has shape 3, expected shape 2"},
         Fault{"TooShort",
               "truth/clearance",
               {2},

@@ -64,7 +64,7 @@ TEST(Scenario, EveryValueSurvivesWritingAndReading) {
 name: odd
 description: "quotes \" and \\ and: colons"
 robot: {model: wam, base: {position_m: [0.1, 0.2, 0.3], rpy_rad: [0.1, -0.2, 0.3]}}
-task: {start: [0.1, 0.2], goal: [0.3333333333333333, -0.2]}
+task: {start: [0.1, 0.2], goal: [0.3333333333333333, -0.2], dwell_s: 0.3}
 horizon: {duration_s: 2.5, step_s: 0.25}
 workspace: {first_center_m: [-0.5, 0.25, 0], cell_m: 0.03, cells: [10, 11, 12]}
 floor_m: -0.6
@@ -102,6 +102,7 @@ seed: 42
   EXPECT_EQ(again.description, "quotes \" and \\ and: colons");
   EXPECT_LT((again.X_WB.rotation().coeffs() - scenario.X_WB.rotation().coeffs()).norm(), 1e-15);
   EXPECT_EQ(again.q_goal, scenario.q_goal);
+  EXPECT_EQ(again.dwell_s, 0.3);
   EXPECT_EQ(again.num_interpolated, 19);
   EXPECT_EQ(again.velocity_scale, 0.75);
   EXPECT_EQ(again.acceleration_scale, 0.25);

@@ -23,7 +23,11 @@ record::Recording FullRecording(int num_control) {
   recording.obstacles = {"trolley", "ball", "door"};
   recording.q_start = Eigen::Vector2d(0.1, -0.2);
   recording.q_goal = Eigen::Vector2d(1.0 / 3, std::nextafter(1.0, 2.0));
+  recording.dwell_s = 0.25;
   recording.v_max = Eigen::Vector2d(2.175, 2.61);
+  recording.limits = {Eigen::Vector2d(2.1, 2.6), Eigen::Vector2d(7.5, 3.75),
+                      Eigen::Vector2d(7500, std::numeric_limits<double>::infinity()),
+                      Eigen::Vector2d(1000, 900)};
   for (int i = 0; i < num_control; ++i) {
     ControlSample sample;
     sample.t = EpisodeTime(0.001 * i);
