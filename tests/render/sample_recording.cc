@@ -74,6 +74,7 @@ record::Recording MakeSampleRecording(const SampleEpisode& episode) {
   recording.q_start = JointsOfSample(0);
   recording.q_goal = JointsOfSample(1);
   recording.v_max = Eigen::Vector3d(2, 2, 2);
+  recording.limits = {recording.v_max, recording.v_max, recording.v_max, recording.v_max};
   const int num_control = static_cast<int>(std::lround(1000 * episode.duration_s));
   for (int i = 0; i <= num_control; ++i) {
     ControlSample sample;
