@@ -85,7 +85,7 @@ TEST_F(FoldingArm, BrakesBeforeItTouchesItself) {
   EXPECT_LT(
       MeasureClearance(arm_, nothing_, direct, start, start, start + HorizonOffset(3)).least_m, 0);
   const PlanResult result = GpPlanner(arm_, {}).Plan(request);
-  EXPECT_EQ(result.status, PlanStatus::kSolved);
+  EXPECT_FALSE(result.clearance.first_contact);  // whatever that takes of the limits
   EXPECT_GT(result.clearance.least_m, 0);
 }
 
