@@ -25,10 +25,12 @@ double LowestAtItsBorder(const SdfGrid& field) {
 }  // namespace
 
 CompositeField::CompositeField(std::shared_ptr<const SdfGrid> static_W,
-                               std::vector<MovingField> objects, double max_distance_m)
+                               std::vector<MovingField> objects, double max_distance_m,
+                               const StaticSolids& exact)
     : static_W_(std::move(static_W)),
       objects_(std::move(objects)),
-      max_distance_m_(max_distance_m) {
+      max_distance_m_(max_distance_m),
+      exact_(exact) {
   if (!static_W_ || !(max_distance_m_ > 0)) {
     throw std::invalid_argument("CompositeField: needs a static grid and a clamp > 0");
   }
@@ -70,7 +72,7 @@ PlacedComposite CompositeField::At(EpisodeTime t) const {
     at_t.X_WO = object.X_WO(t);
     if (object.growth_m) at_t.growth_m = std::clamp(object.growth_m(t), 0.0, object.max_growth_m);
   }
-  return {*static_W_, placed, max_distance_m_};
+  return {*static_W_, placed, max_distance_m_, &exact_};
 }
 
 DistanceSample CompositeField::Sample(const Eigen::Vector3d& p_WQ, EpisodeTime t) const {

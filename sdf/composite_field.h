@@ -23,18 +23,19 @@ struct MovingField {
 };
 
 /// A world with moving things in it, composed when it is asked:
-///   phi(p, t) = min(static(p), field_j(X_OW_j(t) p) - growth_j(t), max_distance_m),
-/// with the gradient of whichever is smallest, in W. It costs no work and no memory for each time
-/// it is asked about, and rounds no position to cells.
+///   phi(p, t) = min(static(p), exact(p), field_j(X_OW_j(t) p) - growth_j(t), max_distance_m),
+/// with the gradient of whichever is smallest, in W. Of what stands still, static(p) is the part
+/// that a map holds as cells, exact(p) the part that is known by its shape, as the floor is. It
+/// costs no work and no memory for each time it is asked about, and rounds no position to cells.
 ///
 /// An object's field must reach max_distance_m + max_growth_m wherever its grid ends
 /// (MakeObjectField sees to that). Then the composite is continuous, and in free space within
 /// max_distance_m it is the distance to the nearest of all things; inside things that touch or
 /// overlap it may underestimate the depth.
 ///
-/// Where the static grid ends, objects still count: the answer is that of the objects that reach
-/// there, max_distance_m if none does; `in_grid` is false either way, because what else is there is
-/// not known.
+/// Where the static grid ends, exact solids and objects still count: the answer is that of those
+/// that reach there, max_distance_m if none does; `in_grid` is false either way, because what else
+/// is there is not known.
 ///
 /// Source: the composite min over objects is Finean, Merkt & Havoutis (ICAPS 2021), who compute it
 /// for a grid and a step at a time (sdf/dense_composite.h).
@@ -43,7 +44,7 @@ class CompositeField final : public DistanceField {
   /// @throws std::invalid_argument without a static grid, an object's field or pose, for a clamp
   /// that is not > 0, or for an object whose field is below the clamp at its grid's border.
   CompositeField(std::shared_ptr<const SdfGrid> static_W, std::vector<MovingField> objects,
-                 double max_distance_m);
+                 double max_distance_m, const StaticSolids& exact = {});
 
   DistanceSample Sample(const Eigen::Vector3d& p_WQ, EpisodeTime t) const override;
   void SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime t,
@@ -59,6 +60,7 @@ class CompositeField final : public DistanceField {
   std::vector<MovingField> objects_;
   std::vector<FieldBound> bounds_;  // of the objects' fields
   double max_distance_m_;
+  ExactSolids exact_;
 };
 
 }  // namespace sidestep::sdf

@@ -15,7 +15,8 @@ namespace sidestep::sdf {
 /// The composite field as a grid, for one time: a copy of the static grid, lowered by each object's
 /// field where that reaches, with the object moved to the nearest whole cell. It is what the
 /// authors compute for each predicted step; here it serves comparison and export, since
-/// CompositeField is cheaper and rounds nothing. Not clamped, and without growth.
+/// CompositeField is cheaper and rounds nothing. Not clamped, without growth and
+/// without exact solids.
 ///
 /// Source: Finean, Merkt & Havoutis (ICAPS 2021), algorithm 2.
 ///

@@ -30,8 +30,8 @@ class DistanceField {
   ///
   /// The value is trilinear between cell centres, so it is continuous, and its gradient is that of
   /// the interpolant: exact, but it jumps at cell faces. Outside the mapped box `in_grid` is false
-  /// and the answer is {max_distance_m(), 0}: unknown space does not push. Only a moving object
-  /// known to reach there still does.
+  /// and the answer is {max_distance_m(), 0}: unknown space does not push. Only a solid
+  /// that is known to reach there still does: a moving object, the floor.
   ///
   /// @param p_WQ [m] position of Q in the world frame W, finite.
   /// @param t    time since the episode began, never an offset from "now".

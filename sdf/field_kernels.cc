@@ -167,6 +167,26 @@ void LowerBlock(const Placed& object, Block& block) {
   }
 }
 
+void LowerBlockByHalfSpace(const HalfSpace& half_space, Block& block) {
+  const D d;
+  const Eigen::Vector3d& n_W = half_space.normal_W;
+  for (std::size_t n = 0; n < block.count; n += kLanes) {
+    const Point p_W = LoadPoint(block.x, block.y, block.z, n);
+    const V distance =
+        hn::Sub(Dot(n_W.x(), n_W.y(), n_W.z(), p_W), hn::Set(d, half_space.offset_m));
+    const V present = hn::Load(d, block.distance_m + n);
+    const M nearer = hn::Lt(distance, present);
+    if (hn::AllFalse(d, nearer)) continue;
+    const auto replace = [&](V value, double* in_block) {
+      hn::Store(hn::IfThenElse(nearer, value, hn::Load(d, in_block + n)), d, in_block + n);
+    };
+    replace(distance, block.distance_m);
+    replace(hn::Set(d, n_W.x()), block.gradient_x);
+    replace(hn::Set(d, n_W.y()), block.gradient_y);
+    replace(hn::Set(d, n_W.z()), block.gradient_z);
+  }
+}
+
 void FindNearBoxes(const Boxes& boxes, const std::array<float, 3>& p_m, float reach_m,
                    std::span<std::uint64_t> bits) {
   const hn::CappedTag<float, kBoxLanes> d;
@@ -202,6 +222,7 @@ namespace sidestep::sdf::field_kernels {
 
 HWY_EXPORT(SampleStaticBlock);
 HWY_EXPORT(LowerBlock);
+HWY_EXPORT(LowerBlockByHalfSpace);
 HWY_EXPORT(FindNearBoxes);
 
 bool IsReadable(const SdfGrid& grid) {
@@ -228,6 +249,10 @@ Grid ViewOf(const SdfGrid& grid) {
 
 int SampleStatic(const Grid& grid, double max_distance_m, Block& block) {
   return HWY_DYNAMIC_DISPATCH(SampleStaticBlock)(grid, max_distance_m, block);
+}
+
+void LowerByHalfSpace(const HalfSpace& half_space, Block& block) {
+  HWY_DYNAMIC_DISPATCH(LowerBlockByHalfSpace)(half_space, block);
 }
 
 void LowerByObject(const Placed& object, Block& block) {

@@ -5,12 +5,13 @@
 #include <cstdint>
 #include <span>
 
+#include "sidestep/core/solid.h"
 #include "sidestep/sdf/map/sdf_grid.h"
 
-/// The SIMD half of PlacedComposite: plain structs and three functions, compiled for several
+/// The SIMD half of PlacedComposite: plain structs and four functions, compiled for several
 /// instruction sets. Each does for a block of points, a vector at a time, what SdfGrid::Sample and
 /// PlacedComposite::Sample do for one: the same operations in the same order, hence the same bits.
-/// Only placed_composite.cc includes this file.
+/// Only PlacedComposite and what it is made of include this file.
 namespace sidestep::sdf::field_kernels {
 
 /// A grid, ready to be interpolated.
@@ -48,6 +49,9 @@ struct alignas(64) Block {
 
 /// Samples a grid that does not move, clamped. @return how many of the points lie outside it.
 int SampleStatic(const Grid& grid, double max_distance_m, Block& block);
+
+/// Lowers the samples to those of a half-space where that is nearer.
+void LowerByHalfSpace(const HalfSpace& half_space, Block& block);
 
 /// Lowers the samples to those of an object where that is nearer.
 void LowerByObject(const Placed& object, Block& block);

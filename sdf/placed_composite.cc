@@ -4,6 +4,8 @@
 #include <bit>
 #include <limits>
 
+#include "sidestep/sdf/block_samples.h"
+
 namespace sidestep::sdf {
 namespace {
 
@@ -65,11 +67,12 @@ FieldBound DomainBound(const SdfGrid& field_O) {
 }
 
 PlacedComposite::PlacedComposite(const SdfGrid& static_W, const std::vector<PlacedObject>& objects,
-                                 double max_distance_m)
+                                 double max_distance_m, const ExactSolids* solids)
     : static_W_(static_W),
       static_readable_(field_kernels::IsReadable(static_W)),
       static_view_(field_kernels::ViewOf(static_W)),
-      max_distance_m_(max_distance_m) {
+      max_distance_m_(max_distance_m),
+      solids_(solids) {
   objects_.reserve(objects.size());
   for (const PlacedObject& given : objects) {
     const Eigen::Matrix3d R_WO = given.X_WO.rotation().toRotationMatrix();
@@ -112,6 +115,7 @@ DistanceSample PlacedComposite::Sample(const Eigen::Vector3d& p_WQ) const {
     const GridSample fixed = static_W_.Sample(p_WQ);
     if (fixed.distance_m < max_distance_m_) sample = {fixed.distance_m, fixed.gradient, true};
   }
+  if (solids_ != nullptr) solids_->Lower(p_WQ, sample);
   if (objects_.size() >= kMany) {
     LowerByMany(p_WQ, sample);
   } else {
@@ -164,15 +168,12 @@ void PlacedComposite::LowerByMany(const Eigen::Vector3d& p_WQ, DistanceSample& s
 }
 
 int PlacedComposite::SampleBlock(Block& block) const {
-  const auto point = [&](std::size_t n) {
-    return Eigen::Vector3d(block.x[n], block.y[n], block.z[n]);
-  };
   int num_outside = 0;
   if (static_readable_) {
     num_outside = field_kernels::SampleStatic(static_view_, max_distance_m_, block);
   } else {
     for (std::size_t n = 0; n < block.count; ++n) {
-      const GridSample sample = static_W_.Sample(point(n));
+      const GridSample sample = static_W_.Sample(PointOf(block, n));
       const bool counts = sample.in_grid && sample.distance_m < max_distance_m_;
       block.distance_m[n] = counts ? sample.distance_m : max_distance_m_;
       block.gradient_x[n] = counts ? sample.gradient.x() : 0;
@@ -181,18 +182,13 @@ int PlacedComposite::SampleBlock(Block& block) const {
       num_outside += sample.in_grid ? 0 : 1;
     }
   }
+  if (solids_ != nullptr) solids_->Lower(block);
   if (objects_.empty()) return num_outside;
 
-  Eigen::Vector3d low = point(0), high = point(0);
-  double farthest_m = block.distance_m[0];
-  for (std::size_t n = 1; n < block.count; ++n) {
-    low = low.cwiseMin(point(n));
-    high = high.cwiseMax(point(n));
-    farthest_m = std::max(farthest_m, block.distance_m[n]);
-  }
+  const BlockBounds bounds = BoundsOf(block);
   for (const Object& object : objects_) {
-    const double squared_m2 = SquaredDistance(low, high, object.low_W, object.high_W);
-    if (!CanBeNearer(object, squared_m2, farthest_m)) continue;
+    const double squared_m2 = SquaredDistance(bounds.low, bounds.high, object.low_W, object.high_W);
+    if (!CanBeNearer(object, squared_m2, bounds.farthest_m)) continue;
     if (object.readable) {
       field_kernels::LowerByObject(object.placed, block);
     } else {
@@ -204,14 +200,9 @@ int PlacedComposite::SampleBlock(Block& block) const {
 
 void PlacedComposite::LowerEach(const Object& object, Block& block) {
   for (std::size_t n = 0; n < block.count; ++n) {
-    DistanceSample sample;
-    sample.distance_m = block.distance_m[n];
-    sample.gradient_W = {block.gradient_x[n], block.gradient_y[n], block.gradient_z[n]};
-    Lower(object, {block.x[n], block.y[n], block.z[n]}, sample);
-    block.distance_m[n] = sample.distance_m;
-    block.gradient_x[n] = sample.gradient_W.x();
-    block.gradient_y[n] = sample.gradient_W.y();
-    block.gradient_z[n] = sample.gradient_W.z();
+    DistanceSample sample = SampleOf(block, n);
+    Lower(object, PointOf(block, n), sample);
+    SetSample(sample, n, block);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "sidestep/core/pose.h"
 #include "sidestep/sdf/aligned_vector.h"
 #include "sidestep/sdf/distance_field.h"
+#include "sidestep/sdf/exact_solids.h"
 #include "sidestep/sdf/field_kernels.h"
 #include "sidestep/sdf/map/sdf_grid.h"
 
@@ -45,8 +46,8 @@ struct SampleColumns {
   int num_outside = 0;
 };
 
-/// A composite field at one moment (see CompositeField, which makes it): a static grid, objects at
-/// their poses, a clamp.
+/// A composite field at one moment (see CompositeField, which makes it): a static grid, solids
+/// known exactly, objects at their poses, a clamp.
 ///
 /// A query looks at those objects alone that can lower its answer. For few, that is a test of each
 /// box; many are tested 4 to 16 at a time, as the machine has it, against the answer so far, and
@@ -57,9 +58,9 @@ class PlacedComposite {
   /// From how many objects on tight bounds are worth their cost.
   static constexpr std::size_t kMany = 16;
 
-  /// @param static_W must outlive this.
+  /// @param static_W must outlive this, and so must the solids, of which there need be none.
   PlacedComposite(const SdfGrid& static_W, const std::vector<PlacedObject>& objects,
-                  double max_distance_m);
+                  double max_distance_m, const ExactSolids* solids = nullptr);
 
   /// As DistanceField has it.
   DistanceSample Sample(const Eigen::Vector3d& p_WQ) const;
@@ -87,6 +88,7 @@ class PlacedComposite {
   bool static_readable_;
   field_kernels::Grid static_view_;
   double max_distance_m_;
+  const ExactSolids* solids_;  // or null
   std::vector<Object> objects_;
   std::array<AlignedVector<float>, 7> box_lanes_;  // of many objects: see field_kernels::Boxes
 };

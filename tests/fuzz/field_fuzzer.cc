@@ -211,11 +211,18 @@ Scene ReadScene(Input& input, int max_objects, bool may_turn) {
 }
 
 // By definition, without any shortcut.
-double LeastDistance_m(const sdf::SdfGrid& static_W, const std::vector<sdf::PlacedObject>& objects,
-                       double clamp_m, const Eigen::Vector3d& p_WQ) {
+double LeastDistance_m(const sdf::SdfGrid& static_W, const StaticSolids& exact,
+                       const std::vector<sdf::PlacedObject>& objects, double clamp_m,
+                       const Eigen::Vector3d& p_WQ) {
   double least_m = clamp_m;
   const sdf::GridSample fixed = static_W.Sample(p_WQ);
   if (fixed.in_grid) least_m = std::min(least_m, fixed.distance_m);
+  for (const HalfSpace& solid : exact.half_spaces) {
+    least_m = std::min(least_m, SignedDistance(solid, p_WQ));
+  }
+  for (const PlacedShape& solid : exact.shapes) {
+    least_m = std::min(least_m, SignedDistance(solid.shape, solid.X_WO.Inverse() * p_WQ));
+  }
   for (const sdf::PlacedObject& object : objects) {
     const sdf::GridSample sample = object.field_O->Sample(object.X_WO.Inverse() * p_WQ);
     if (sample.in_grid) least_m = std::min(least_m, sample.distance_m - object.growth_m);
@@ -233,14 +240,22 @@ void CheckQueries(Input& input) {
         object.growth_m ? std::clamp(object.growth_m(t), 0.0, object.max_growth_m) : 0;
     at_t.push_back({object.field_O.get(), {}, object.X_WO(t), growth_m});
   }
+  StaticSolids exact;
+  if (input.ConsumeBool()) {
+    exact.half_spaces.push_back({Eigen::Vector3d::UnitZ(), ReadPoint(input, 200).z()});
+  }
+  if (input.ConsumeBool()) {
+    exact.shapes.push_back({Box{{0.3, 0.02, 0.2}},
+                            Pose::FromRollPitchYaw(ReadPoint(input, 200), ReadPoint(input, 200))});
+  }
   Eigen::Matrix3Xd p_WQ(3, num_points);
   Eigen::VectorXd least_m(num_points);
   for (Eigen::Index s = 0; s < num_points; ++s) {
     p_WQ.col(s) = ReadPoint(input, 300);
     if (input.ConsumeBool()) p_WQ.col(s) *= 0.99;  // off the centres and borders
-    least_m(s) = LeastDistance_m(*scene.static_W, at_t, scene.clamp_m, p_WQ.col(s));
+    least_m(s) = LeastDistance_m(*scene.static_W, exact, at_t, scene.clamp_m, p_WQ.col(s));
   }
-  const sdf::CompositeField field(scene.static_W, scene.objects, scene.clamp_m);
+  const sdf::CompositeField field(scene.static_W, scene.objects, scene.clamp_m, exact);
   const sdf::PlacedComposite placed = field.At(t);
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     const OnlyTarget only(target);

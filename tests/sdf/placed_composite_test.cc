@@ -40,6 +40,7 @@ struct World {
   SdfGrid static_W;
   std::vector<SdfGrid> shapes;
   std::vector<PlacedObject> objects;  // of the shapes
+  StaticSolids exact = {};
 };
 
 // Objects of a few shapes, turned any way, all over a static grid and beyond it.
@@ -62,6 +63,18 @@ World RandomWorld(std::mt19937_64& random, const std::array<int, 3>& size, int n
   return world;
 }
 
+// The floor, a slope, and shapes that stand in the grid and beyond it.
+StaticSolids SomeSolids(std::mt19937_64& random) {
+  StaticSolids solids;
+  solids.half_spaces = {{{0, 0, 1}, -0.9}, {{0.36, -0.48, 0.8}, -1.1}};
+  const Shape shapes[] = {Box{{0.5, 0.02, 0.4}}, Cylinder{0.05, 0.6}, Ellipsoid{{0.1, 0.2, 0.3}}};
+  for (const Shape& shape : shapes) {
+    solids.shapes.push_back(
+        {shape, Pose::FromRollPitchYaw(UniformPoint(random, 3), UniformPoint(random, 1.2))});
+  }
+  return solids;
+}
+
 // The definition: the least of all, without any shortcut.
 DistanceSample Least(const World& world, const Eigen::Vector3d& p_WQ) {
   const GridSample fixed = world.static_W.Sample(p_WQ);
@@ -69,6 +82,8 @@ DistanceSample Least(const World& world, const Eigen::Vector3d& p_WQ) {
   if (fixed.in_grid && fixed.distance_m < kClamp_m) {
     least = {fixed.distance_m, fixed.gradient, true};
   }
+  const ExactSolids solids(world.exact);
+  solids.Lower(p_WQ, least);
   for (const PlacedObject& object : world.objects) {
     const GridSample sample = object.field_O->Sample(object.X_WO.Inverse() * p_WQ);
     if (sample.in_grid && sample.distance_m < least.distance_m) {
@@ -104,8 +119,10 @@ TEST_P(PlacedCompositeOn, AnswersBatchesOfAnySizeAsItAnswersEachPoint) {
   for (const std::array<int, 3>& size :
        {std::array<int, 3>{40, 33, 41}, {2, 2, 2}, {40, 1, 40}, {1, 1, 1}}) {
     for (const int num_objects : {0, 1, 5, 16, 40}) {
-      const World world = RandomWorld(random, size, num_objects, num_objects % 2 == 0);
-      const PlacedComposite field(world.static_W, world.objects, kClamp_m);
+      World world = RandomWorld(random, size, num_objects, num_objects % 2 == 0);
+      if (num_objects != 1) world.exact = SomeSolids(random);
+      const ExactSolids solids(world.exact);
+      const PlacedComposite field(world.static_W, world.objects, kClamp_m, &solids);
       for (const int count : {1, 7, 64, 65, 300}) {
         SCOPED_TRACE(testing::Message() << num_objects << " objects, " << count << " points, grid "
                                         << size[0] << 'x' << size[1] << 'x' << size[2]);
@@ -136,8 +153,10 @@ TEST_P(PlacedCompositeOn, IsTheLeastOfAllFieldsHoweverManyThereAre) {
   for (const int num_objects : {0, 1, 3, 15, 16, 17, 64, 128, 300}) {
     for (const bool tight : {false, true}) {
       SCOPED_TRACE(testing::Message() << num_objects << " objects, tight bounds: " << tight);
-      const World world = RandomWorld(random, {40, 33, 41}, num_objects, tight);
-      const PlacedComposite field(world.static_W, world.objects, kClamp_m);
+      World world = RandomWorld(random, {40, 33, 41}, num_objects, tight);
+      if (tight) world.exact = SomeSolids(random);
+      const ExactSolids solids(world.exact);
+      const PlacedComposite field(world.static_W, world.objects, kClamp_m, &solids);
       const Eigen::Matrix3Xd p_WQ = Points(random, world.static_W, 2000);
       int num_by_objects = 0;
       for (Eigen::Index s = 0; s < p_WQ.cols(); ++s) {
@@ -156,8 +175,11 @@ TEST_P(PlacedCompositeOn, IsTheLeastOfAllFieldsHoweverManyThereAre) {
 TEST_P(PlacedCompositeOn, HasTheGradientOfItsValue) {
   const OnlyTarget target(GetParam());
   std::mt19937_64 random(3);
-  const World world = RandomWorld(random, {40, 33, 41}, 20, true);
-  const PlacedComposite field(world.static_W, world.objects, kClamp_m);
+  World world = RandomWorld(random, {40, 33, 41}, 20, true);
+  world.exact = SomeSolids(random);
+  world.exact.shapes.pop_back();  // the ellipsoid's gradient is not a closed form
+  const ExactSolids solids(world.exact);
+  const PlacedComposite field(world.static_W, world.objects, kClamp_m, &solids);
   const double step_m = 1e-7;
   int num_smooth = 0;
   for (int s = 0; s < 3000; ++s) {
@@ -173,6 +195,31 @@ TEST_P(PlacedCompositeOn, HasTheGradientOfItsValue) {
     }
   }
   EXPECT_GT(num_smooth, 4000);
+}
+
+TEST_P(PlacedCompositeOn, KnowsTheFloorExactlyInsideTheGridAndBeyondIt) {
+  const OnlyTarget target(GetParam());
+  const SdfGrid nothing({Eigen::Vector3d::Constant(-1), kCell_m, {40, 40, 40}},
+                        AlignedVector<float>(40 * 40 * 40, 1000.0F));
+  const ExactSolids floor({{}, {{{0, 0, 1}, 0.123}}});
+  const PlacedComposite field(nothing, {}, kClamp_m, &floor);
+  std::mt19937_64 random(5);
+  Eigen::Matrix3Xd p_WQ(3, 1000);
+  for (Eigen::Index s = 0; s < p_WQ.cols(); ++s) p_WQ.col(s) = UniformPoint(random, 3);
+  DistanceSamples samples;
+  field.SampleMany(p_WQ, samples);
+  int num_outside = 0, num_by_floor = 0;
+  for (Eigen::Index s = 0; s < p_WQ.cols(); ++s) {
+    const double height_m = p_WQ(2, s) - 0.123;
+    ASSERT_EQ(samples.distance_m(s), std::min(height_m, kClamp_m));
+    ASSERT_EQ(samples.gradient_W.col(s),
+              (height_m < kClamp_m ? 1.0 : 0.0) * Eigen::Vector3d::UnitZ());
+    const bool outside = !nothing.Covers(p_WQ.col(s));
+    num_outside += outside ? 1 : 0;
+    num_by_floor += outside && height_m < kClamp_m ? 1 : 0;
+  }
+  EXPECT_EQ(samples.num_outside, num_outside);  // what else is there is not known
+  EXPECT_GT(num_by_floor, 300);
 }
 
 INSTANTIATE_TEST_SUITE_P(Target, PlacedCompositeOn,
