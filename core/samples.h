@@ -56,6 +56,7 @@ struct CycleRecord {
   int iterations = 0;                ///< of the optimiser
   double cost = 0;                   ///< final, of the whole objective
   double predicted_clearance_m = 0;  ///< least along the plan, in the predicted field
+  int samples_outside_grid = 0;      ///< positions of spheres along the plan that no map covers
   EpisodeTime plan_start;            ///< the plan's state k is at plan_start + plan.t_s(k)
   Trajectory plan;
   std::vector<PredictedObject> objects;

@@ -17,7 +17,9 @@ struct Clearance {
   /// of the robot's self_collision(). At most the field's clamp less the smallest radius.
   double least_m = std::numeric_limits<double>::infinity();
   std::optional<EpisodeTime> first_contact;  ///< the first sample at which something touches
-  int samples_outside_grid = 0;  ///< sphere positions outside the mapped box: not judged
+  /// Sphere positions outside the mapped box: judged against what is known exactly, the floor above
+  /// all, and against moving things, but not against what else may be there.
+  int samples_outside_grid = 0;
 };
 
 /// Free before not free. Of two that are free, the one that keeps more distance; of two that are

@@ -160,6 +160,7 @@ Replanner::Cycle Replanner::Run(EpisodeTime now, const JointState& state, Horizo
     clearance = measure(present, EndOf(present));
   }
   record.predicted_clearance_m = clearance.least_m;
+  record.samples_outside_grid = clearance.samples_outside_grid;
   if (record.accepted) {
     running_ = cycle.plan = shown;
     is_braking_ = record.status == kBraked;

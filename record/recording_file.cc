@@ -245,6 +245,8 @@ void WriteCycles(Hdf5ImageWriter& file, const Recording& recording) {
   file.Write("cycles/cost", Column(cycles, [](const auto& c) { return c.cost; }));
   file.Write("cycles/predicted_clearance",
              Column(cycles, [](const auto& c) { return c.predicted_clearance_m; }), "m");
+  file.Write("cycles/samples_outside_grid",
+             IntegerColumn(cycles, [](const auto& c) { return c.samples_outside_grid; }));
   file.Write("cycles/plan_start",
              Column(cycles, [](const auto& c) { return c.plan_start.seconds(); }), "s");
 
@@ -520,6 +522,7 @@ void ReadCycles(const Hdf5ImageReader& file, Recording* recording) {
   const Integers iterations = file.ReadIntegers("cycles/iterations", {num_rows});
   const Doubles cost = file.ReadDoubles("cycles/cost", {num_rows});
   const Doubles clearance = file.ReadDoubles("cycles/predicted_clearance", {num_rows});
+  const Integers outside = file.ReadIntegers("cycles/samples_outside_grid", {num_rows});
   const Doubles plan_start = ReadTimes(file, "cycles/plan_start", num_rows);
   recording->cycles.resize(num_rows);
   for (std::size_t i = 0; i < num_rows; ++i) {
@@ -531,6 +534,7 @@ void ReadCycles(const Hdf5ImageReader& file, Recording* recording) {
     cycle.iterations = static_cast<int>(iterations.values[i]);
     cycle.cost = cost.values[i];
     cycle.predicted_clearance_m = clearance.values[i];
+    cycle.samples_outside_grid = static_cast<int>(outside.values[i]);
     cycle.plan_start = EpisodeTime(plan_start.values[i]);
   }
   ReadPlans(file, recording);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 #include "sidestep/record/questions.h"
@@ -25,6 +26,12 @@ double Replans(const record::Recording& recording) {
 double PlansAccepted(const record::Recording& recording) {
   return static_cast<double>(std::count_if(recording.cycles.begin(), recording.cycles.end(),
                                            [](const CycleRecord& c) { return c.accepted; }));
+}
+
+double SamplesOutsideGrid(const record::Recording& recording) {
+  return std::accumulate(
+      recording.cycles.begin(), recording.cycles.end(), 0.0,
+      [](double sum, const CycleRecord& cycle) { return sum + cycle.samples_outside_grid; });
 }
 
 }  // namespace sidestep::bench

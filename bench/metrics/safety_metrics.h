@@ -11,5 +11,8 @@ double MinClearance(const record::Recording& recording);
 /// How many planning cycles were run, and how many plans the robot was given.
 double Replans(const record::Recording& recording);
 double PlansAccepted(const record::Recording& recording);
+/// How many positions of spheres along the plans of all cycles lay outside the mapped box, where
+/// only what is known exactly and what moves was seen.
+double SamplesOutsideGrid(const record::Recording& recording);
 
 }  // namespace sidestep::bench

@@ -63,6 +63,7 @@ record::Recording FullRecording(int num_control) {
     cycle.iterations = 7 + i;
     cycle.cost = 12.5 * i;
     cycle.predicted_clearance_m = 0.04 - i;
+    cycle.samples_outside_grid = 5 * i;
     cycle.plan_start = EpisodeTime(0.1 * i + 0.05);
     if (i != 1) {
       const int num_states = 3 + i;
