@@ -12,6 +12,7 @@
 #include "sidestep/bench/metrics/registry.h"
 #include "sidestep/bench/planner_settings.h"
 #include "sidestep/bench/sensor_watch.h"
+#include "sidestep/bench/true_world.h"
 #include "sidestep/core/cpu_time.h"
 #include "sidestep/core/goal.h"
 #include "sidestep/planner/registry.h"
@@ -315,9 +316,12 @@ sdf::WorldModelOptions MakeWorldModelOptions(const scenarios::Scenario& scenario
     options.unseen = sdf::UnseenSpaceFromString(scenario.sensor.camera->unseen);
   }
   options.max_distance_m = max_distance_m;
-  if (world.truth != nullptr) {
-    options.true_obstacles = [truth = world.truth](EpisodeTime t) { return truth->ObstaclesAt(t); };
-  }
+  options.cells = scenario.sensor.cells;
+  options.exact.half_spaces = {FloorOf(scenario)};
+  if (scenario.static_world == scenarios::StaticWorld::kExact)
+    options.exact.shapes = StaticShapes(scenario);
+  // Where the scenario is not simulated, its motions are not the truth.
+  if (world.truth != nullptr) options.true_obstacles = TrueMotions(scenario);
   return options;
 }
 

@@ -48,8 +48,8 @@ EpisodeWorld MakeEpisodeWorld(std::shared_ptr<Source> source) {
 using WorldFactory =
     std::function<EpisodeWorld(const scenarios::Scenario&, const robot::RobotModel&)>;
 
-/// How the scenario's model of the world is made, fed from `world`, which must outlive it. Its
-/// fields tell distances up to `max_distance_m`.
+/// How the scenario's model of the world is made, fed from `world`. Its fields hold no reference to
+/// either and tell distances up to `max_distance_m`.
 sdf::WorldModelOptions MakeWorldModelOptions(const scenarios::Scenario& scenario,
                                              double max_distance_m, const EpisodeWorld& world);
 

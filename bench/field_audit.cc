@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 #include <stdexcept>
 #include <utility>
 
 #include "sidestep/bench/statistics.h"
-#include "sidestep/core/shape.h"
+#include "sidestep/bench/true_world.h"
+#include "sidestep/core/random.h"
 
 namespace sidestep::bench {
 namespace {
@@ -23,34 +23,6 @@ double AngleDeg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 }
 
 }  // namespace
-
-TrueWorld::TrueWorld(const scenarios::Scenario& scenario,
-                     const std::vector<ObjectObservation>& obstacles) {
-  for (const scenarios::StaticBox& box : scenario.static_boxes) {
-    solids_.push_back({Box{box.size_m}, box.X_WO.Inverse()});
-  }
-  for (const ObjectObservation& obstacle : obstacles) {
-    solids_.push_back({obstacle.shape, obstacle.X_WO.Inverse()});
-  }
-}
-
-double TrueWorld::Distance(const Eigen::Vector3d& p_WQ) const {
-  double least_m = std::numeric_limits<double>::infinity();
-  for (const Solid& solid : solids_) {
-    least_m = std::min(least_m, SignedDistance(solid.shape, solid.X_OW * p_WQ));
-  }
-  return least_m;
-}
-
-Eigen::Vector3d TrueWorld::Gradient(const Eigen::Vector3d& p_WQ) const {
-  constexpr double kStep_m = 1e-5;
-  Eigen::Vector3d gradient;
-  for (int a = 0; a < 3; ++a) {
-    const Eigen::Vector3d step = kStep_m * Eigen::Vector3d::Unit(a);
-    gradient(a) = (Distance(p_WQ + step) - Distance(p_WQ - step)) / (2 * kStep_m);
-  }
-  return gradient;
-}
 
 std::string ToString(AuditZone zone) {
   switch (zone) {
@@ -78,12 +50,11 @@ FieldAudit::FieldAudit(const scenarios::Scenario& scenario, std::vector<double> 
   if (ahead_s_.empty() || !in_order || num_points < 1) {
     throw std::invalid_argument("field audit: needs times >= 0 ahead, and points");
   }
-  std::mt19937_64 random(scenario_.seed);
+  RandomStream random(scenario_.seed, "field audit");
   for (int s = 0; s < num_points; ++s) {
     for (int a = 0; a < 3; ++a) {
       const double last = grid.size[static_cast<std::size_t>(a)] - 1;
-      p_WQ_(a, s) = grid.first_center_m(a) +
-                    grid.cell_m * std::uniform_real_distribution<double>(0, last)(random);
+      p_WQ_(a, s) = grid.first_center_m(a) + grid.cell_m * last * random.Uniform();
     }
   }
 }
@@ -103,17 +74,19 @@ void FieldAudit::Look(EpisodeTime t, const sdf::DistanceField& field,
   sdf::DistanceSamples samples;
   for (std::size_t n = 0; n < ahead_s_.size(); ++n) {
     const EpisodeTime asked = t + HorizonOffset(ahead_s_[n]);
-    const TrueWorld world(scenario_, truth.ObstaclesAt(asked));
+    const sdf::ShapeField world = TrueWorldAt(scenario_, truth.ObstaclesAt(asked));
     field.SampleMany(p_WQ_, asked, samples);
     for (Eigen::Index s = 0; s < p_WQ_.cols(); ++s) {
-      const double truth_m = world.Distance(p_WQ_.col(s));
-      const AuditZone zone = ZoneOf(truth_m, clamp_m);
-      const double error_m = std::abs(samples.distance_m(s) - std::min(truth_m, clamp_m));
+      const sdf::DistanceSample exact = world.Sample(p_WQ_.col(s), asked);
+      const AuditZone zone = ZoneOf(exact.distance_m, clamp_m);
+      const double truth_m = std::min(exact.distance_m, clamp_m);
+      const double error_m = std::abs(samples.distance_m(s) - truth_m);
       Errors& errors = errors_[{n, zone}];
       errors.distance_m.push_back(error_m);
+      errors.too_far_m = std::max(errors.too_far_m, samples.distance_m(s) - truth_m);
       const Eigen::Vector3d gradient_W = samples.gradient_W.col(s);
       if ((zone == AuditZone::kNear || zone == AuditZone::kMargin) && !gradient_W.isZero(0)) {
-        errors.gradient_deg.push_back(AngleDeg(gradient_W, world.Gradient(p_WQ_.col(s))));
+        errors.gradient_deg.push_back(AngleDeg(gradient_W, exact.gradient_W));
       }
       const double rank_m = zone == AuditZone::kInside ? kInsideRank_m : error_m;
       if (rank_m <= worst_error_m_) continue;
@@ -134,6 +107,7 @@ std::vector<AuditRow> FieldAudit::Rows() const {
     row.median_m = Quantile(errors.distance_m, 0.5);
     row.p99_m = Quantile(errors.distance_m, 0.99);
     row.max_m = Quantile(errors.distance_m, 1);
+    row.too_far_max_m = errors.too_far_m;
     row.gradient_median_deg = Quantile(errors.gradient_deg, 0.5);
     row.gradient_p99_deg = Quantile(errors.gradient_deg, 0.99);
     row.gradient_max_deg = Quantile(errors.gradient_deg, 1);
@@ -144,7 +118,7 @@ std::vector<AuditRow> FieldAudit::Rows() const {
 AuditGrids FieldAudit::GridsAt(EpisodeTime t, const sdf::DistanceField& field,
                                const robot::WorldTruth& truth) const {
   const GridSpec& grid = scenario_.grid;
-  const TrueWorld world(scenario_, truth.ObstaclesAt(t));
+  const sdf::ShapeField world = TrueWorldAt(scenario_, truth.ObstaclesAt(t));
   const double clamp_m = field.max_distance_m();
   sdf::AlignedVector<float> field_m, truth_m;
   field_m.reserve(grid.num_cells());
@@ -157,7 +131,7 @@ AuditGrids FieldAudit::GridsAt(EpisodeTime t, const sdf::DistanceField& field,
       field.SampleMany(p_WQ, t, samples);
       for (int i = 0; i < grid.size[0]; ++i) {
         field_m.push_back(static_cast<float>(samples.distance_m(i)));
-        truth_m.push_back(static_cast<float>(std::min(world.Distance(p_WQ.col(i)), clamp_m)));
+        truth_m.push_back(static_cast<float>(std::min(world.Distance(p_WQ.col(i), t), clamp_m)));
       }
     }
   }

@@ -16,25 +16,6 @@
 
 namespace sidestep::bench {
 
-/// The solids of a scenario at one moment, by their closed forms.
-class TrueWorld {
- public:
-  TrueWorld(const scenarios::Scenario& scenario, const std::vector<ObjectObservation>& obstacles);
-
-  /// The exact distance to the nearest surface [m]; negative inside a solid. Where solids overlap,
-  /// the depth in the deeper one.
-  double Distance(const Eigen::Vector3d& p_WQ) const;
-  /// Its gradient, by central differences.
-  Eigen::Vector3d Gradient(const Eigen::Vector3d& p_WQ) const;
-
- private:
-  struct Solid {
-    Shape shape;
-    Pose X_OW;
-  };
-  std::vector<Solid> solids_;
-};
-
 /// Where a point lies, by its true distance d. `cell` is the grid's, `margin` the field's clamp.
 enum class AuditZone {
   kInside,  ///< d < 0
@@ -55,6 +36,8 @@ struct AuditRow {
   std::size_t num_points = 0;
   /// Of |field - min(truth, clamp)| [m].
   double median_m = 0, p99_m = 0, max_m = 0;
+  /// The most that the field believes to be free beyond the truth [m], >= 0: the error that hurts.
+  double too_far_max_m = 0;
   /// Of the angle between the gradients [deg], where both are defined: in kNear and kMargin.
   double gradient_median_deg = 0, gradient_p99_deg = 0, gradient_max_deg = 0;
 };
@@ -63,7 +46,7 @@ struct AuditRow {
 struct AuditPlace {
   EpisodeTime t_cycle, t;  ///< when the field was made, and what time it was asked about
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
-  double field_m = 0, truth_m = 0;
+  double field_m = 0, truth_m = 0;  ///< at most the field's clamp
 };
 
 /// A field and the truth at the centres of a scenario's cells.
@@ -78,8 +61,7 @@ class FieldAudit {
   /// @param ahead_s which times are asked about, after each cycle; each >= 0.
   FieldAudit(const scenarios::Scenario& scenario, std::vector<double> ahead_s, int num_points);
 
-  /// Compares the field of one planning cycle. Neither is asked anything afterwards: fields of full
-  /// knowledge end with their world.
+  /// Compares the field of one planning cycle. Neither is asked anything afterwards.
   void Look(EpisodeTime t, const sdf::DistanceField& field, const robot::WorldTruth& truth);
 
   /// One row a time and a zone that had points.
@@ -93,6 +75,7 @@ class FieldAudit {
  private:
   struct Errors {
     std::vector<double> distance_m, gradient_deg;
+    double too_far_m = 0;
   };
 
   AuditZone ZoneOf(double truth_m, double clamp_m) const;

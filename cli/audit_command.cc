@@ -28,6 +28,7 @@ namespace {
 struct AuditOptions {
   std::string scenario;
   Overrides overrides;
+  std::vector<std::string> settings;
   std::vector<double> ahead_s = {0, 0.5, 1, 2};
   int num_points = 20000;
   std::string out;
@@ -51,11 +52,12 @@ sdf::SdfGrid Difference(const bench::AuditGrids& grids) {
 
 void PrintRows(const std::vector<bench::AuditRow>& rows) {
   Print(
-      "                         error, mm                  gradient off by, degrees\n"
-      "ahead s  zone      points  median     p99     max    median    p99    max\n");
+      "                         error, mm                          gradient off by, degrees\n"
+      "ahead s  zone      points  median     p99     max too far    median    p99    max\n");
   for (const bench::AuditRow& row : rows) {
-    Print("{:7.2f}  {:<7} {:8} {:7.2f} {:7.2f} {:7.2f}", row.ahead_s, ToString(row.zone),
-          row.num_points, 1e3 * row.median_m, 1e3 * row.p99_m, 1e3 * row.max_m);
+    Print("{:7.2f}  {:<7} {:8} {:7.2f} {:7.2f} {:7.2f} {:7.2f}", row.ahead_s, ToString(row.zone),
+          row.num_points, 1e3 * row.median_m, 1e3 * row.p99_m, 1e3 * row.max_m,
+          1e3 * row.too_far_max_m);
     if (!std::isnan(row.gradient_median_deg)) {
       Print("   {:7.2f} {:6.2f} {:6.2f}", row.gradient_median_deg, row.gradient_p99_deg,
             row.gradient_max_deg);
@@ -75,9 +77,13 @@ std::vector<std::string> PictureTitle(const scenarios::Scenario& scenario,
 std::string Json(const std::vector<bench::AuditRow>& rows, const bench::AuditPlace& worst) {
   nlohmann::ordered_json json;
   for (const bench::AuditRow& row : rows) {
-    nlohmann::ordered_json entry = {{"ahead_s", row.ahead_s},   {"zone", ToString(row.zone)},
-                                    {"points", row.num_points}, {"median_m", row.median_m},
-                                    {"p99_m", row.p99_m},       {"max_m", row.max_m}};
+    nlohmann::ordered_json entry = {{"ahead_s", row.ahead_s},
+                                    {"zone", ToString(row.zone)},
+                                    {"points", row.num_points},
+                                    {"median_m", row.median_m},
+                                    {"p99_m", row.p99_m},
+                                    {"max_m", row.max_m},
+                                    {"too_far_max_m", row.too_far_max_m}};
     if (!std::isnan(row.gradient_median_deg)) {
       entry["gradient_median_deg"] = row.gradient_median_deg;
       entry["gradient_p99_deg"] = row.gradient_p99_deg;
@@ -93,7 +99,8 @@ std::string Json(const std::vector<bench::AuditRow>& rows, const bench::AuditPla
   return bench::JsonText(json);
 }
 
-int Audit(const AuditOptions& options) {
+int Audit(AuditOptions options) {
+  options.overrides.settings = ParseSettings(options.settings);
   const DataPaths paths = FindDataPaths();
   const Problem problem = LoadProblem(options.scenario, options.overrides, paths);
   const std::string out = MakeOutFolder(
@@ -135,11 +142,15 @@ int Audit(const AuditOptions& options) {
   Print("{} planning cycles, {} points each, knowledge: {}\n", num_cycles, options.num_points,
         problem.scenario.knowledge);
   PrintRows(rows);
-  Print(
-      "most wrong in free space: {:.1f} mm instead of {:.1f} mm at ({:.3f}, {:.3f}, {:.3f}) m; "
-      "field made at {:.2f} s, asked about {:.2f} s\n",
-      1e3 * worst.field_m, 1e3 * worst.truth_m, worst.p_W.x(), worst.p_W.y(), worst.p_W.z(),
-      worst.t_cycle.seconds(), worst.t.seconds());
+  if (worst.field_m == worst.truth_m) {
+    Print("no point in free space was wrong\n");
+  } else {
+    Print(
+        "most wrong in free space: {:.1f} mm instead of {:.1f} mm at ({:.3f}, {:.3f}, {:.3f}) m; "
+        "field made at {:.2f} s, asked about {:.2f} s\n",
+        1e3 * worst.field_m, 1e3 * worst.truth_m, worst.p_W.x(), worst.p_W.y(), worst.p_W.z(),
+        worst.t_cycle.seconds(), worst.t.seconds());
+  }
   Print(
       "written: {}/{{audit.json, slice.png, field.nrrd, truth.nrrd, difference.nrrd, "
       "occupancy.nrrd}}\n",
@@ -162,6 +173,8 @@ void AddAuditCommand(CommandLine& line) {
       ->check(NumberFrom(0.0, 100.0));
   audit->add_option("--seed", overrides.seed, "Seed of everything random")
       ->check(NumberFrom(0, 2147483647));
+  audit->add_option("--set", options->settings, "KEY=VALUE, as for `sidestep run`")
+      ->allow_extra_args(false);
   audit
       ->add_option("--ahead", options->ahead_s,
                    "Times after each cycle that the field is asked about [s]")
@@ -176,7 +189,8 @@ void AddAuditCommand(CommandLine& line) {
   audit->footer(
       "The error is |field - min(truth, clamp)|: the clamp is the planner's safety margin plus "
       "its\n"
-      "largest sphere. Zones, by the true distance d:\n"
+      "largest sphere; `too far` is the most by which the field said more than that. Zones, by the "
+      "true distance d:\n"
       "  inside  d < 0                          near  0 <= d < 1.75 cells\n"
       "  margin  from there to clamp - 1 cell   edge  from there to the clamp\n"
       "  beyond  d > clamp: the field should answer its clamp\n"

@@ -6,12 +6,16 @@
 #include <vector>
 
 #include "sidestep/bench/sensor_watch.h"
+#include "sidestep/bench/true_world.h"
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/number_range.h"
+#include "sidestep/cli/slice_axes.h"
 #include "sidestep/cli/wiring.h"
 #include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
+#include "sidestep/render/font.h"
+#include "sidestep/render/gl_context.h"
 #include "sidestep/render/image.h"
 #include "sidestep/render/video_writer.h"
 #include "sidestep/sdf/world_model.h"
@@ -28,29 +32,25 @@ struct FieldOptions {
 };
 
 // What a model of the world believes at a time, having seen everything until then, while the robot
-// rests. The world is kept, because beliefs under full knowledge ask it.
+// rests.
 struct Belief {
-  bench::EpisodeWorld world;
-  std::unique_ptr<sdf::WorldModel> model;
   EpisodeTime t;
   std::shared_ptr<const sdf::DistanceField> field;
+  sdf::ShapeField moving;  // where that truly will be
 };
 
-Belief Watch(Scene scene, const FieldOptions& options) {
-  Belief belief;
-  belief.world = std::move(scene.world);
-  belief.model = sdf::MakeWorldModel(
-      bench::MakeWorldModelOptions(scene.scenario, options.reach_m, belief.world));
-  bench::SensorWatch sensor(*belief.world.sensor);
+Belief Watch(const Scene& scene, const FieldOptions& options) {
+  const auto model = sdf::MakeWorldModel(
+      bench::MakeWorldModelOptions(scene.scenario, options.reach_m, scene.world));
+  bench::SensorWatch sensor(*scene.world.sensor);
   while (sensor.NextDue().seconds() <= options.time_s) {
     const EpisodeTime now = sensor.NextDue();
-    belief.world.robot->AdvanceTo(now);
-    if (const std::optional<Scan> scan = sensor.Read(now)) belief.model->Observe(*scan);
+    scene.world.robot->AdvanceTo(now);
+    if (const std::optional<Scan> scan = sensor.Read(now)) model->Observe(*scan);
   }
   if (!sensor.has_seen()) throw InputError("--time", "the sensor has seen nothing until then");
-  belief.t = EpisodeTime(options.time_s);
-  belief.field = belief.model->MakeField();
-  return belief;
+  return {EpisodeTime(options.time_s), model->MakeField(),
+          sdf::ShapeField({}, bench::TrueMotions(scene.scenario))};
 }
 
 // Solids are dark, near is warm, far is pale.
@@ -66,19 +66,16 @@ render::Color ColorOf(double distance_m, double reach_m) {
 // One level slice: the field at a time, a thin line for each tenth of a metre, and in black what is
 // truly solid then of everything that moves. y points up, x to the right.
 render::Image Slice(const Belief& belief, const GridSpec& grid, EpisodeTime t, double height_m) {
-  constexpr int kPixelsPerCell = 3;
-  const double pixel_m = grid.cell_m / kPixelsPerCell;
-  const int width = grid.size[0] * kPixelsPerCell, height = grid.size[1] * kPixelsPerCell;
+  const int pixels_a_cell = std::max(3, 288 / std::max(grid.size[0], grid.size[1]));
+  const double pixel_m = grid.cell_m / pixels_a_cell;
+  const int width = grid.size[0] * pixels_a_cell, height = grid.size[1] * pixels_a_cell;
   const auto point = [&](int x, int y) {
     return Eigen::Vector3d(grid.first_center_m.x() - grid.cell_m / 2 + (x + 0.5) * pixel_m,
                            grid.first_center_m.y() - grid.cell_m / 2 + (height - y - 0.5) * pixel_m,
                            height_m);
   };
-  const std::vector<ObjectObservation> obstacles = belief.world.truth->ObstaclesAt(t);
   const auto is_truly_filled = [&](const Eigen::Vector3d& p_W) {
-    return std::any_of(obstacles.begin(), obstacles.end(), [&](const ObjectObservation& o) {
-      return SignedDistance(o.shape, o.X_WO.Inverse() * p_W) < 0;
-    });
+    return belief.moving.Distance(p_W, t) < 0;
   };
   const auto distance_at = [&](int x, int y) {
     return belief.field->Sample(point(x, y), t).distance_m;
@@ -102,24 +99,48 @@ render::Image Slice(const Belief& belief, const GridSpec& grid, EpisodeTime t, d
   return image;
 }
 
+// What the colours mean: a bar from solid to far with its ends in metres.
+void DrawScale(render::Image& image, int y, double reach_m, const render::Font& font) {
+  constexpr render::Color kInk{20, 20, 30};
+  constexpr int kLetters = 14, kHeight = 12, kLength = 160;
+  constexpr double kLeft = 48;
+  double x = font.Draw(image, kLeft, y, kLetters, kInk, "solid ");
+  image.Fill({static_cast<int>(x), y + 1, 2 * kHeight, kHeight}, ColorOf(-1, reach_m));
+  x = font.Draw(image, x + 2 * kHeight + 12, y, kLetters, kInk, "0 ");
+  for (int n = 0; n < kLength; ++n) {
+    const double distance_m = reach_m * std::max(n, 1) / (kLength - 1);
+    image.Fill({static_cast<int>(x) + n, y + 1, 1, kHeight}, ColorOf(distance_m, reach_m));
+  }
+  image.Outline({static_cast<int>(x), y + 1, kLength, kHeight}, kInk, 1);
+  font.Draw(image, x + kLength, y, kLetters, kInk, fmt::format(" {:g} m or more", reach_m));
+}
+
 int DrawField(FieldOptions options) {
   render::CheckPngName(options.out);
   CheckCanWrite(options.out);
   options.overrides.settings = ParseSettings(options.settings);
-  Scene scene = LoadScene(options.scenario, options.overrides, FindDataPaths());
-  const GridSpec grid = scene.scenario.grid;
-  const Belief belief = Watch(std::move(scene), options);
-  constexpr int kGap = 6;
+  const Scene scene = LoadScene(options.scenario, options.overrides, FindDataPaths());
+  const GridSpec& grid = scene.scenario.grid;
+  const Belief belief = Watch(scene, options);
+  const Eigen::Vector3d low = grid.first_center_m.array() - grid.cell_m / 2;
+  const SliceExtent extent = {low.x(), low.x() + grid.cell_m * grid.size[0], low.y(),
+                              low.y() + grid.cell_m * grid.size[1]};
+  const render::GlContext gl;  // has the letters
+  const render::Font font(gl);
   std::vector<render::Image> slices;
   for (const double ahead_s : options.ahead_s) {
-    slices.push_back(Slice(belief, grid, belief.t + HorizonOffset(ahead_s), options.height_m));
+    const EpisodeTime t = belief.t + HorizonOffset(ahead_s);
+    const std::string title = fmt::format("{:g} s, z = {:g} m", t.seconds(), options.height_m);
+    slices.push_back(WithAxes(Slice(belief, grid, t, options.height_m), extent, title, font));
   }
-  const int width = slices.front().width() + kGap;
-  render::Image image(width * static_cast<int>(slices.size()) - kGap, slices.front().height());
+  constexpr int kScale = 26;
+  const int width = slices.front().width(), height = slices.front().height();
+  render::Image image(std::max(width * static_cast<int>(slices.size()), 400), height + kScale);
   image.Fill({0, 0, image.width(), image.height()}, {255, 255, 255});
   for (std::size_t i = 0; i < slices.size(); ++i) {
     image.Paste(slices[i], width * static_cast<int>(i), 0);
   }
+  DrawScale(image, height + 4, options.reach_m, font);
   render::WritePng(image, options.out);
   Print("written  {}\n", options.out);
   return 0;
@@ -152,7 +173,7 @@ void AddFieldCommand(CommandLine& line) {
   field->footer(
       "Solids are dark red, what is near them orange, what is far pale; a line for each 0.1 m. "
       "Black\n"
-      "outlines are where moving obstacles will truly be.");
+      "outlines are where moving obstacles will truly be. Axes in metres, x to the right, y up.");
   field->callback([&line, options] { line.exit_code = DrawField(*options); });
 }
 

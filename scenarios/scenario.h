@@ -103,6 +103,12 @@ struct MovingObstacle {
   bool faces_path = false;
 };
 
+/// How the planner knows what never moves.
+enum class StaticWorld {
+  kOccupancy,  ///< as the sensor sees it: by cells
+  kExact,      ///< static shapes by their shapes, from the beginning; the sensor need not see them
+};
+
 struct Scenario {
   std::string name;
   std::string description;
@@ -111,7 +117,7 @@ struct Scenario {
   std::string robot;  ///< empty: a world without one; then there is no task, planner, ... either
   Pose X_WB;          ///< of the robot's base
   std::string
-      mount;  ///< static box the robot stands on: its mount links may touch it; may be empty
+      mount;  ///< static box the robot stands on: its mount links may touch it; empty: the floor
   std::string start_name, goal_name;  ///< empty when given as joints
   Eigen::VectorXd q_start, q_goal;    ///< filled when given as joints; else looked up by the name
   double dwell_s = 0;  ///< how long to stay at the goal for it to be reached; at most the horizon
@@ -119,8 +125,11 @@ struct Scenario {
   double horizon_s = 0;
   double step_s = 0;
   GridSpec grid;
-  double floor_m = 0;  ///< height of the floor: solid, drawn, never part of the occupancy
+  /// Height of the floor: solid, drawn, known exactly under every knowledge, never part of the
+  /// occupancy. Without a mount the robot stands on it.
+  double floor_m = 0;
 
+  StaticWorld static_world = StaticWorld::kOccupancy;
   std::vector<StaticBox> static_boxes;
   std::vector<MovingObstacle> moving_obstacles;
 

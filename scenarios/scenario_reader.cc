@@ -11,6 +11,7 @@
 #include "sidestep/core/yaml_reader.h"
 #include "sidestep/scenarios/scenario.h"
 #include "sidestep/scenarios/track_file.h"
+#include "sidestep/scenarios/yaml_text.h"
 
 namespace sidestep::scenarios {
 namespace {
@@ -26,6 +27,11 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kShortestLeg_s = 0.01;
 // Objects' fields are padded for it on all sides.
 constexpr double kMaxGrowth_m = 0.5;
+// The objective is weighted by the squares of these: beyond such bounds it has no digits left.
+constexpr double kLeastSigmaObs_m = 1e-5, kMostSigmaObs_m = 1e3;
+constexpr double kLeastQc = 1e-6, kMostQc = 1e6;
+constexpr double kLeastScale = 0.001;  // of a limit
+constexpr double kMostSigmas = 100;
 
 void ReadRobot(const YamlReader& top, Scenario& scenario) {
   const YamlReader map = top.GetMap("robot");
@@ -328,7 +334,15 @@ void ReadPlanner(const YamlReader& top, Scenario& scenario) {
     map.Fail("epsilon_m",
              "must be at most " + std::to_string(kMaxMarginCells) + " cells of the workspace");
   }
-  scenario.sigma_obs = map.GetPositive("sigma_obs");
+  const auto within = [&](const char* key, double value, double least, double most) {
+    if (value < least || value > most) {
+      map.Fail(key,
+               "must be from " + Number(least) + " to " + Number(most) + ", is " + Number(value));
+    }
+    return value;
+  };
+  scenario.sigma_obs =
+      within("sigma_obs", map.GetPositive("sigma_obs"), kLeastSigmaObs_m, kMostSigmaObs_m);
   scenario.num_interpolated = map.GetInt("n_int");
   if (scenario.num_interpolated < 0 || scenario.num_interpolated > 100) {
     map.Fail("n_int", "must be from 0 to 100, is " + std::to_string(scenario.num_interpolated));
@@ -337,11 +351,11 @@ void ReadPlanner(const YamlReader& top, Scenario& scenario) {
     return map.Has(key) ? map.GetPositive(key) : otherwise;
   };
   const auto flag = [&](const char* key) { return map.Has(key) ? map.GetBool(key) : true; };
-  scenario.qc = number("qc", 1.0);
+  scenario.qc = within("qc", number("qc", 1.0), kLeastQc, kMostQc);
   const auto fraction = [&](const char* key, double otherwise) {
     const double value = number(key, otherwise);
     if (value > 1) map.Fail(key, "must be at most 1");
-    return value;
+    return within(key, value, kLeastScale, 1);
   };
   scenario.velocity_scale = fraction("velocity_scale", 0.95);
   scenario.acceleration_scale = fraction("acceleration_scale", 0.5);
@@ -352,7 +366,7 @@ void ReadPlanner(const YamlReader& top, Scenario& scenario) {
   const auto size = [&](const char* key, double otherwise) {
     return map.Has(key) ? map.GetNonNegative(key) : otherwise;
   };
-  scenario.growth_sigmas = size("growth_sigmas", 0);
+  scenario.growth_sigmas = within("growth_sigmas", size("growth_sigmas", 0), 0, kMostSigmas);
   scenario.growth_limit_m = size("growth_limit_m", 0.1);
   if (scenario.growth_limit_m > kMaxGrowth_m) map.Fail("growth_limit_m", "must be at most 0.5 m");
   scenario.position_limits = flag("position_limits");
@@ -452,6 +466,9 @@ Scenario Read(YamlReader top, const std::string& file, const std::optional<std::
   }
   ReadWorkspace(top, scenario);
   scenario.floor_m = top.Has("floor_m") ? top.GetDouble("floor_m") : 0;
+  const bool exact =
+      top.Has("static_world") && top.GetChoice("static_world", {"occupancy", "exact"}) == "exact";
+  scenario.static_world = exact ? StaticWorld::kExact : StaticWorld::kOccupancy;
   ReadStaticBoxes(top, scenario, names);
   ReadMovingObstacles(top, folder, scenario, names);
   if (has_robot) {

@@ -154,6 +154,8 @@ std::string ToYaml(const Scenario& scenario) {
        ", cell_m: " + Number(grid.cell_m) + ", cells: [" + std::to_string(grid.size[0]) + ", " +
        std::to_string(grid.size[1]) + ", " + std::to_string(grid.size[2]) + "]}");
   line("floor_m: " + Number(scenario.floor_m));
+  line(std::string("static_world: ") +
+       (scenario.static_world == StaticWorld::kExact ? "exact" : "occupancy"));
   if (!scenario.static_boxes.empty()) line("static_boxes:");
   for (const StaticBox& box : scenario.static_boxes) {
     line("  - {name: " + box.name + ", " + PoseKeys("center_m", box.X_WO) +

@@ -81,6 +81,10 @@ SensorSettings ReadSensorSettings(const YamlReader& map) {
   settings.line = map.Line("name");
   settings.rate_hz = map.GetPositive("rate_hz");
   if (settings.rate_hz > kMaxRateHz) map.Fail("rate_hz", "must be at most 1000");
+  if (map.Has("cells")) {
+    const bool centre = map.GetChoice("cells", {"touched", "centre"}) == "centre";
+    settings.cells = centre ? CellRule::kCentre : CellRule::kTouched;
+  }
   settings.latency_s = AtMost(map, "latency_s", 0, kMaxDelay);
   settings.jitter_s = AtMost(map, "jitter_s", 0, kMaxDelay);
   settings.dropout = AtMost(map, "dropout", 0, 1);
@@ -94,6 +98,7 @@ SensorSettings ReadSensorSettings(const YamlReader& map) {
 std::string ToYaml(const SensorSettings& settings) {
   std::string text = "sensor:\n  name: " + Quoted(settings.name) +
                      "\n  rate_hz: " + Number(settings.rate_hz) +
+                     "\n  cells: " + (settings.cells == CellRule::kCentre ? "centre" : "touched") +
                      "\n  latency_s: " + Number(settings.latency_s) +
                      "\n  jitter_s: " + Number(settings.jitter_s) +
                      "\n  dropout: " + Number(settings.dropout) + "\n";

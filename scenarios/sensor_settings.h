@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "sidestep/core/cell_touch.h"
 #include "sidestep/core/yaml_reader.h"
 
 namespace sidestep::scenarios {
@@ -44,6 +45,9 @@ struct TagSettings {
 struct SensorSettings {
   std::string name = "occupancy";
   double rate_hz = 0;
+  /// Which cells a solid fills. A camera's are those that hold a point of a surface, whatever it
+  /// says.
+  CellRule cells = CellRule::kTouched;
   // How what it captures arrives, whatever the sensor.
   double latency_s = 0;  ///< from capture to arrival, at least
   double jitter_s = 0;   ///< further delay, uniform in [0, jitter_s)

@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "sidestep/sdf/composite_field.h"
-#include "sidestep/sdf/grid_field.h"
 #include "sidestep/sdf/map/cells_near.h"
 #include "sidestep/sdf/map/object_field.h"
 #include "sidestep/sdf/map/static_map.h"
+#include "sidestep/sdf/once_per_time.h"
 #include "sidestep/sdf/prediction/registry.h"
 #include "sidestep/sdf/stopwatch.h"
 #include "sidestep/sdf/tracking/named_objects.h"
@@ -20,6 +20,13 @@
 
 namespace sidestep::sdf {
 namespace {
+
+// Frees the cells that a solid fills in scans, a quarter of a cell beyond its surface, too, where
+// centres decide: a rasteriser's rounding must not leave a skin behind.
+void Erase(const Shape& shape, const Pose& X_WO, CellRule rule, OccupancyGrid* grid) {
+  VisitFilledCells(grid->spec, shape, X_WO, rule, grid->spec.cell_m / 4,
+                   [&](std::size_t cell) { grid->cells[cell] = 0; });
+}
 
 // What all kinds of knowledge share: the order of scans, the grid, the static map, the clock.
 class MappedWorld : public WorldModel {
@@ -36,8 +43,10 @@ class MappedWorld : public WorldModel {
     Stopwatch stopwatch;
     occupancy_ = &scan_map_.Update(scan);
     LearnObjects(scan);
+    rule_ = scan.kind == ScanKind::kSolid ? options_.cells : CellRule::kTouched;
+    const OccupancyGrid& unexplained = Unexplained();
     times_.map_s += stopwatch.Lap();
-    Learn(*occupancy_, scan.t);
+    Learn(unexplained, scan.t);
     t_scan_ = scan.t;
   }
 
@@ -65,14 +74,23 @@ class MappedWorld : public WorldModel {
   virtual void LearnObjects(const Scan& scan) {
     if (scan.objects.empty()) return;
     with_objects_ = *occupancy_;
-    FillObjects(scan.objects, &with_objects_);
+    FillObjects(scan.objects, options_.cells, &with_objects_);
     occupancy_ = &with_objects_;
   }
   // Takes in what is filled at time t.
   virtual void Learn(const OccupancyGrid& occupancy, EpisodeTime t) = 0;
+  // The field of what is static and of what moves.
   virtual std::shared_ptr<const DistanceField> Compose(std::shared_ptr<const SdfGrid> static_W) {
-    return std::make_shared<GridField>(std::move(static_W), options_.max_distance_m);
+    return MakeComposite(std::move(static_W), {});
   }
+  std::shared_ptr<const DistanceField> MakeComposite(std::shared_ptr<const SdfGrid> static_W,
+                                                     std::vector<MovingField> moving) const {
+    return std::make_shared<CompositeField>(std::move(static_W), std::move(moving),
+                                            options_.max_distance_m, options_.exact);
+  }
+
+  // Which cells solids fill in the latest scan.
+  CellRule rule() const { return rule_; }
 
   const WorldModelOptions options_;
   ScanMap scan_map_;
@@ -81,6 +99,20 @@ class MappedWorld : public WorldModel {
   StaticMap static_map_;
   std::optional<EpisodeTime> t_scan_;  // of the latest scan
   WorldModelTimes times_;
+
+ private:
+  // What is filled and not already known exactly.
+  const OccupancyGrid& Unexplained() {
+    if (options_.exact.shapes.empty()) return *occupancy_;
+    unexplained_ = *occupancy_;
+    for (const PlacedShape& known : options_.exact.shapes) {
+      Erase(known.shape, known.X_WO, rule_, &unexplained_);
+    }
+    return unexplained_;
+  }
+
+  CellRule rule_ = CellRule::kTouched;
+  OccupancyGrid unexplained_;
 };
 
 // Knowledge::kStatic
@@ -167,16 +199,16 @@ class PredictedWorld final : public MappedWorld {
           moving.emplace_back(MovingField{belief.object->field_O, belief.motion.X_WO});
       if (options_.growth_sigmas > 0) {
         field.max_growth_m = options_.growth_limit_m;
-        field.growth_m = [sigmas = options_.growth_sigmas,
-                          covariance_m2 = belief.motion.covariance_m2](EpisodeTime t) {
-          const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance_m2(t),
-                                                                    Eigen::EigenvaluesOnly);
-          return sigmas * std::sqrt(std::max(0.0, axes.eigenvalues()(2)));
-        };
+        field.growth_m =
+            OncePerTime<double>([sigmas = options_.growth_sigmas,
+                                 covariance_m2 = belief.motion.covariance_m2](EpisodeTime t) {
+              const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance_m2(t),
+                                                                        Eigen::EigenvaluesOnly);
+              return sigmas * std::sqrt(std::max(0.0, axes.eigenvalues()(2)));
+            });
       }
     }
-    return std::make_shared<CompositeField>(std::move(static_W), std::move(moving),
-                                            options_.max_distance_m);
+    return MakeComposite(std::move(static_W), std::move(moving));
   }
 
   std::unique_ptr<const ObstaclePredictor> predictor_;
@@ -188,17 +220,22 @@ class PredictedWorld final : public MappedWorld {
 // Knowledge::kFullKnowledge
 class KnownWorld final : public MappedWorld {
  public:
-  using MappedWorld::MappedWorld;
+  explicit KnownWorld(const WorldModelOptions& options) : MappedWorld(options) {
+    for (const MovingShape& obstacle : *options_.true_obstacles) {
+      fields_.push_back(std::make_shared<const SdfGrid>(
+          MakeShapeField(obstacle.shape, options_.grid.cell_m, options_.max_distance_m)));
+    }
+  }
 
   std::vector<PredictedObject> DescribeObjects(
       const std::vector<EpisodeTime>& times) const override {
     std::vector<PredictedObject> described;
-    for (std::size_t n = 0; n < fields_.size(); ++n) {
+    for (const MovingShape& obstacle : *options_.true_obstacles) {
       PredictedObject& box = described.emplace_back();
-      box.id = static_cast<int>(n) + 1;
-      box.half_extents_m = fields_[n].half_extents_m;
+      box.id = static_cast<int>(described.size());
+      box.half_extents_m = HalfExtents(obstacle.shape);
       box.t = times;
-      for (const EpisodeTime t : times) box.X_WO.push_back(options_.true_obstacles(t).at(n).X_WO);
+      for (const EpisodeTime t : times) box.X_WO.push_back(obstacle.X_WO(t));
     }
     return described;
   }
@@ -206,23 +243,12 @@ class KnownWorld final : public MappedWorld {
  private:
   void LearnObjects(const Scan&) override {}  // the truth is known
 
-  struct ShapeField {
-    Eigen::Vector3d half_extents_m;
-    std::shared_ptr<const SdfGrid> field_O;
-  };
-
   void Learn(const OccupancyGrid& occupancy, EpisodeTime t) override {
     Stopwatch stopwatch;
-    const std::vector<ObjectObservation> obstacles = options_.true_obstacles(t);
-    if (fields_.empty()) {
-      for (const ObjectObservation& obstacle : obstacles) {
-        fields_.push_back({HalfExtents(obstacle.shape),
-                           std::make_shared<const SdfGrid>(MakeShapeField(
-                               obstacle.shape, options_.grid.cell_m, options_.max_distance_m))});
-      }
-    }
     OccupancyGrid still = occupancy;
-    for (const ObjectObservation& obstacle : obstacles) Erase(obstacle, still);
+    for (const MovingShape& obstacle : *options_.true_obstacles) {
+      Erase(obstacle.shape, obstacle.X_WO(t), rule(), &still);
+    }
     static_map_.Set(still);
     times_.map_s += stopwatch.Lap();
   }
@@ -230,24 +256,12 @@ class KnownWorld final : public MappedWorld {
   std::shared_ptr<const DistanceField> Compose(std::shared_ptr<const SdfGrid> static_W) override {
     std::vector<MovingField> moving;
     for (std::size_t n = 0; n < fields_.size(); ++n) {
-      moving.push_back({fields_[n].field_O, [n, truth = options_.true_obstacles](EpisodeTime t) {
-                          return truth(t).at(n).X_WO;
-                        }});
+      moving.push_back({fields_[n], (*options_.true_obstacles)[n].X_WO});
     }
-    return std::make_shared<CompositeField>(std::move(static_W), std::move(moving),
-                                            options_.max_distance_m);
+    return MakeComposite(std::move(static_W), std::move(moving));
   }
 
-  // Frees the cells that an obstacle fills. A quarter of a cell beyond its surface, too: a cell is
-  // filled when its centre is inside, and a rasteriser's rounding must not leave a skin behind.
-  static void Erase(const ObjectObservation& obstacle, OccupancyGrid& grid) {
-    const double skin_m = grid.spec.cell_m / 4;
-    VisitCellsNear(grid.spec, obstacle, skin_m, [&](std::size_t cell, double distance_m) {
-      if (distance_m <= skin_m) grid.cells[cell] = 0;
-    });
-  }
-
-  std::vector<ShapeField> fields_;  // of each obstacle, in the order of true_obstacles
+  std::vector<std::shared_ptr<const SdfGrid>> fields_;  // one an obstacle
 };
 
 struct Word {

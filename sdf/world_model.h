@@ -1,17 +1,20 @@
 #pragma once
 
-#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "sidestep/core/cell_touch.h"
 #include "sidestep/core/grid.h"
 #include "sidestep/core/observations.h"
 #include "sidestep/core/samples.h"
+#include "sidestep/core/solid.h"
 #include "sidestep/core/time.h"
 #include "sidestep/sdf/distance_field.h"
 #include "sidestep/sdf/map/distance_transform.h"
 #include "sidestep/sdf/map/scan_map.h"
+#include "sidestep/sdf/shape_field.h"
 
 namespace sidestep::sdf {
 
@@ -29,9 +32,6 @@ Knowledge KnowledgeFromString(const std::string& word);
 inline constexpr Knowledge kAllKnowledge[] = {Knowledge::kStatic, Knowledge::kExecuteAndUpdate,
                                               Knowledge::kPrediction, Knowledge::kFullKnowledge};
 
-/// Where every moving obstacle truly is at a time; only full_knowledge asks.
-using TrueObstacles = std::function<std::vector<ObjectObservation>(EpisodeTime)>;
-
 struct WorldModelOptions {
   Knowledge knowledge = Knowledge::kPrediction;
   std::string predictor = "kalman_cv";            ///< a name of sdf/prediction/registry.h
@@ -43,7 +43,15 @@ struct WorldModelOptions {
   double max_distance_m = 0;  ///< fields are clamped here: safety margin + largest sphere
   /// Of fields made from cells; full_knowledge has the true shapes of what moves.
   DistanceConvention convention = DistanceConvention::kSurface;
-  TrueObstacles true_obstacles;  ///< must be set for full_knowledge
+  /// What is known of the world before anything is seen, and better than by cells: the floor;
+  /// static things. It is in every field, whatever the knowledge and also outside the grid, and the
+  /// cells that its shapes explain are left out of the map.
+  StaticSolids exact;
+  /// Which cells solids fill in scans of solids (in those of surfaces, the cells of their surface):
+  /// named objects are drawn by it, and what is known otherwise is erased by it.
+  CellRule cells = CellRule::kTouched;
+  /// Every moving obstacle with its true motion, as values; must be set for full_knowledge.
+  std::optional<std::vector<MovingShape>> true_obstacles;
 };
 
 /// CPU seconds that the stages of one planning cycle took, for the report only.

@@ -14,10 +14,11 @@ OccupancyGrid CheckedGrid(const GridSpec& spec) {
 
 }  // namespace
 
-OccupancySensor::OccupancySensor(const World& world, const GridSpec& spec, double rate_hz)
+OccupancySensor::OccupancySensor(const World& world, const GridSpec& spec, double rate_hz,
+                                 CellRule rule)
     : world_(world),
       clock_(rate_hz),
-      rasteriser_(world.model()),
+      rasteriser_(world.model(), rule),
       geoms_(FindWorldGeoms(world.model())),
       fixed_(CheckedGrid(spec)) {
   std::vector<std::size_t> cells;
@@ -56,7 +57,7 @@ std::unique_ptr<robot::Sensor> MakeOccupancySensor(const scenarios::Scenario& sc
                                                    const World& world) {
   const scenarios::SensorSettings& settings = scenario.sensor;
   std::unique_ptr<robot::Sensor> sensor =
-      std::make_unique<OccupancySensor>(world, scenario.grid, settings.rate_hz);
+      std::make_unique<OccupancySensor>(world, scenario.grid, settings.rate_hz, settings.cells);
   if (!settings.noise) return sensor;
   return std::make_unique<NoisyOccupancy>(std::move(sensor), scenario.grid, *settings.noise,
                                           scenario.seed);

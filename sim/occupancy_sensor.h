@@ -23,7 +23,7 @@ class OccupancySensor final : public robot::Sensor {
  public:
   /// @param world must outlive this.
   /// @throws std::invalid_argument for a rate <= 0 or a bad grid.
-  OccupancySensor(const World& world, const GridSpec& spec, double rate_hz);
+  OccupancySensor(const World& world, const GridSpec& spec, double rate_hz, CellRule rule);
 
   EpisodeTime NextDue() const override { return clock_.Next(); }
   std::optional<Scan> Read() override;

@@ -30,13 +30,14 @@ struct CellRange {
   std::array<int, 3> first, last;  // inclusive; empty if last < first
 };
 
-// The cells whose centres may lie in a box of the geom's frame.
+// The cells whose centres may lie in a box of the geom's frame, or at most `reach_m` beside it
+// along each axis of W.
 CellRange CellsAround(const Eigen::Matrix3d& R_WG, const Eigen::Vector3d& p_WG,
-                      const Eigen::Vector3d& lower, const Eigen::Vector3d& upper,
+                      const Eigen::Vector3d& lower, const Eigen::Vector3d& upper, double reach_m,
                       const GridSpec& spec) {
   CellRange range;
   for (int a = 0; a < 3; ++a) {
-    double low = p_WG(a), high = p_WG(a);
+    double low = p_WG(a) - reach_m, high = p_WG(a) + reach_m;
     for (int b = 0; b < 3; ++b) {
       const double end1 = R_WG(a, b) * lower(b), end2 = R_WG(a, b) * upper(b);
       if (R_WG(a, b) == 0) continue;  // 0 times infinity
@@ -54,19 +55,16 @@ CellRange CellsAround(const Eigen::Matrix3d& R_WG, const Eigen::Vector3d& p_WG,
   return range;
 }
 
-// Fills the cells of a range whose centres, in the geom's frame, are inside.
-template <typename Inside>
-std::vector<std::size_t> FillWhere(const CellRange& range, const Eigen::Matrix3d& R_WG,
-                                   const Eigen::Vector3d& p_WG, OccupancyGrid* grid,
-                                   const Inside& inside) {
+// Fills the cells of a range for whose centres, in W, the test holds.
+template <typename Test>
+std::vector<std::size_t> FillWhere(const CellRange& range, OccupancyGrid* grid, const Test& test) {
   std::vector<std::size_t> filled;
   const GridSpec& spec = grid->spec;
-  const Eigen::Matrix3d R_GW = R_WG.transpose();
   for (int k = range.first[2]; k <= range.last[2]; ++k) {
     for (int j = range.first[1]; j <= range.last[1]; ++j) {
       for (int i = range.first[0]; i <= range.last[0]; ++i) {
         const std::size_t cell = spec.Index(i, j, k);
-        if (grid->cells[cell] != 0 || !inside(R_GW * (spec.Center(i, j, k) - p_WG))) continue;
+        if (grid->cells[cell] != 0 || !test(spec.Center(i, j, k))) continue;
         grid->cells[cell] = 1;
         filled.push_back(cell);
       }
@@ -75,9 +73,27 @@ std::vector<std::size_t> FillWhere(const CellRange& range, const Eigen::Matrix3d
   return filled;
 }
 
+std::optional<Shape> ShapeOf(const mjModel& model, int geom) {
+  const Eigen::Map<const Eigen::Vector3d> size(model.geom_size + 3 * geom);
+  switch (model.geom_type[geom]) {
+    case mjGEOM_SPHERE:
+      return Sphere{size(0)};
+    case mjGEOM_CAPSULE:
+      return Capsule{size(0), 2 * size(1)};
+    case mjGEOM_CYLINDER:
+      return Cylinder{size(0), 2 * size(1)};
+    case mjGEOM_ELLIPSOID:
+      return Ellipsoid{size};
+    case mjGEOM_BOX:
+      return Box{2 * size};
+    default:
+      return std::nullopt;
+  }
+}
+
 }  // namespace
 
-Rasteriser::Rasteriser(const mjModel& model) : model_(model) {
+Rasteriser::Rasteriser(const mjModel& model, CellRule rule) : model_(model), rule_(rule) {
   for (int i = 0; i < model.ngeom; ++i) solids_.push_back(MakeSolid(model, i));
 }
 
@@ -103,6 +119,7 @@ std::vector<Rasteriser::HalfSpace> Rasteriser::FacesOf(const ConvexHull& hull) {
 
 Rasteriser::Solid Rasteriser::MakeSolid(const mjModel& model, int geom) {
   Solid solid;
+  solid.shape = ShapeOf(model, geom);
   const Eigen::Map<const Eigen::Vector3d> size(model.geom_size + 3 * geom);
   const auto set_half_extents = [&](double x, double y, double z) {
     solid.upper_m = {x, y, z};
@@ -118,6 +135,7 @@ Rasteriser::Solid Rasteriser::MakeSolid(const mjModel& model, int geom) {
       const Eigen::Vector2d& half = solid.height_field->half_size_m();
       solid.lower_m = {-half.x(), -half.y(), solid.height_field->base_m()};
       solid.upper_m = {half.x(), half.y(), solid.height_field->top_m()};
+      solid.parts = PartsTouch(solid.height_field->Prisms());
       break;
     }
     case mjGEOM_SPHERE:
@@ -138,6 +156,7 @@ Rasteriser::Solid Rasteriser::MakeSolid(const mjModel& model, int geom) {
         solid.upper_m = solid.upper_m.cwiseMax(vertex);
       }
       solid.faces = FacesOf(hull);
+      solid.parts = PartsTouch({hull});
       break;
     }
     default:  // box, ellipsoid
@@ -147,13 +166,47 @@ Rasteriser::Solid Rasteriser::MakeSolid(const mjModel& model, int geom) {
 }
 
 std::vector<std::size_t> Rasteriser::Fill(const mjData& data, int geom, OccupancyGrid* grid) const {
+  return rule_ == CellRule::kTouched ? FillTouched(data, geom, grid)
+                                     : FillCentres(data, geom, grid);
+}
+
+std::vector<std::size_t> Rasteriser::FillTouched(const mjData& data, int geom,
+                                                 OccupancyGrid* grid) const {
+  const Solid& solid = solids_[static_cast<std::size_t>(geom)];
+  const Eigen::Matrix3d R_WG = GeomRotation(data, geom);
+  const Eigen::Vector3d p_WG = GeomPosition(data, geom);
+  const double cell_m = grid->spec.cell_m;
+  const CellRange range =
+      CellsAround(R_WG, p_WG, solid.lower_m, solid.upper_m, cell_m / 2, grid->spec);
+  if (solid.shape) return FillWhere(range, grid, CubeTouch(*solid.shape, R_WG, p_WG, cell_m));
+  if (model_.geom_type[geom] == mjGEOM_PLANE) {
+    const Eigen::Vector3d normal_W = R_WG.col(2);
+    const double reach_m = cell_m / 2 * normal_W.cwiseAbs().sum();
+    return FillWhere(range, grid, [&](const Eigen::Vector3d& p_WCenter) {
+      return normal_W.dot(p_WCenter - p_WG) - reach_m < -kOn;
+    });
+  }
+  Eigen::Isometry3d X_WG = Eigen::Isometry3d::Identity();
+  X_WG.linear() = R_WG;
+  X_WG.translation() = p_WG;
+  return FillWhere(range, grid,
+                   [&, X_GW = X_WG.inverse(Eigen::Isometry)](const Eigen::Vector3d& p_WCenter) {
+                     return solid.parts(X_GW, p_WCenter, cell_m);
+                   });
+}
+
+std::vector<std::size_t> Rasteriser::FillCentres(const mjData& data, int geom,
+                                                 OccupancyGrid* grid) const {
   const Solid& solid = solids_[static_cast<std::size_t>(geom)];
   const Eigen::Vector3d size = Eigen::Map<const Eigen::Vector3d>(model_.geom_size + 3 * geom);
   const Eigen::Matrix3d R_WG = GeomRotation(data, geom);
   const Eigen::Vector3d p_WG = GeomPosition(data, geom);
-  const CellRange range = CellsAround(R_WG, p_WG, solid.lower_m, solid.upper_m, grid->spec);
+  const CellRange range = CellsAround(R_WG, p_WG, solid.lower_m, solid.upper_m, 0, grid->spec);
+  const Eigen::Matrix3d R_GW = R_WG.transpose();
   const auto fill_where = [&](const auto& inside) {
-    return FillWhere(range, R_WG, p_WG, grid, inside);
+    return FillWhere(range, grid, [&](const Eigen::Vector3d& p_WCenter) {
+      return inside(R_GW * (p_WCenter - p_WG));
+    });
   };
   using Point = Eigen::Vector3d;
   switch (model_.geom_type[geom]) {
@@ -197,9 +250,10 @@ std::vector<std::size_t> Rasteriser::Fill(const mjData& data, int geom, Occupanc
   }
 }
 
-OccupancyGrid RasteriseWorld(const mjModel& model, const mjData& data, const GridSpec& spec) {
+OccupancyGrid RasteriseWorld(const mjModel& model, const mjData& data, const GridSpec& spec,
+                             CellRule rule) {
   OccupancyGrid grid(spec);
-  const Rasteriser rasteriser(model);
+  const Rasteriser rasteriser(model, rule);
   const WorldGeoms geoms = FindWorldGeoms(model);
   for (const std::vector<int>* solids : {&geoms.fixed, &geoms.moving}) {
     for (const int geom : *solids) rasteriser.Fill(data, geom, &grid);

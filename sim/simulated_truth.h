@@ -16,8 +16,9 @@ namespace sidestep::sim {
 ///
 /// Judged is every solid of the robot against every other solid: static boxes, floor, moving
 /// obstacles. Left out are pairs of bodies that the model excludes from contact (the links at the
-/// robot's foot and what it stands on), and pairs of which neither can move (the bolted base and
-/// the tables); against a moving obstacle, the base is judged like any link.
+/// robot's foot and what it stands on, be it the mount or the floor), and pairs of which neither
+/// can move (the bolted base and the tables); against a moving obstacle, the base is judged like
+/// any link.
 ///
 /// A contact of the robot with itself counts as contact, with the object "self", where its model
 /// lets its links touch. It has no part in the clearance, which is to other things.

@@ -7,9 +7,9 @@
 namespace sidestep::sim {
 namespace {
 
-Eigen::Matrix3Xd StaticCells(const World& world, const GridSpec& grid) {
+Eigen::Matrix3Xd StaticCells(const World& world, const GridSpec& grid, CellRule rule) {
   CheckGridSpec(grid);
-  const Rasteriser rasteriser(world.model());
+  const Rasteriser rasteriser(world.model(), rule);
   OccupancyGrid occupancy(grid);
   for (const int geom : FindWorldGeoms(world.model()).fixed) {
     rasteriser.Fill(world.data(), geom, &occupancy);
@@ -40,12 +40,13 @@ Eigen::Vector3d Normal3(RandomStream& random) {
 }  // namespace
 
 TagCamera::TagCamera(const World& world, const GridSpec& grid,
-                     const scenarios::TagSettings& settings, double rate_hz, std::uint64_t seed)
+                     const scenarios::TagSettings& settings, double rate_hz, CellRule rule,
+                     std::uint64_t seed)
     : world_(world),
       settings_(settings),
       clock_(rate_hz),
       caster_(world.model()),
-      p_WStatic_(StaticCells(world, grid)),
+      p_WStatic_(StaticCells(world, grid, rule)),
       random_(seed, "tags") {}
 
 bool TagCamera::Sees(const scenarios::MovingObstacle& obstacle, const Pose& X_WO) const {
@@ -94,7 +95,7 @@ std::optional<Scan> TagCamera::Read() {
 std::unique_ptr<robot::Sensor> MakeTagCamera(const scenarios::Scenario& scenario,
                                              const World& world) {
   return std::make_unique<TagCamera>(world, scenario.grid, scenario.sensor.tags.value(),
-                                     scenario.sensor.rate_hz, scenario.seed);
+                                     scenario.sensor.rate_hz, scenario.sensor.cells, scenario.seed);
 }
 
 }  // namespace sidestep::sim

@@ -25,7 +25,7 @@ class TagCamera final : public robot::Sensor {
  public:
   /// @param world must outlive this.
   TagCamera(const World& world, const GridSpec& grid, const scenarios::TagSettings& settings,
-            double rate_hz, std::uint64_t seed);
+            double rate_hz, CellRule rule, std::uint64_t seed);
 
   EpisodeTime NextDue() const override { return clock_.Next(); }
   std::optional<Scan> Read() override;

@@ -341,13 +341,15 @@ std::string BuildWorldXml(const scenarios::Scenario& scenario,
   for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
     AddMovingObstacle(scenario, i, models_dir, worldbody);
   }
-  if (!scenario.mount.empty()) {
+  if (!mount_links.empty()) {
+    // The floor is a geom of the world itself, the only one that is.
+    const std::string stands_on = scenario.mount.empty() ? "world" : scenario.mount;
     XMLElement* contact = world->FirstChildElement("contact");
     if (contact == nullptr) contact = Append(world, "contact");
     for (const std::string& link : mount_links) {
       XMLElement* exclude = Append(contact, "exclude");
       Set(exclude, "body1", link);
-      Set(exclude, "body2", scenario.mount);
+      Set(exclude, "body2", stands_on);
     }
   }
   tinyxml2::XMLPrinter printer;

@@ -27,8 +27,8 @@ inline constexpr const char* kTopCamera = "top";
 ///   draws by default stands inside it: geoms of group 2 that touch nothing, origin at the middle
 ///   of the shape's underside, x axis along the first leg of the motion (as far as it is level).
 /// - The floor, lights, and the cameras `overview` and `top`.
-/// - Contacts between each of `mount_links` (bodies of the robot) and the scenario's mount are
-///   excluded.
+/// - Contacts between each of `mount_links` (bodies of the robot) and what it stands on are
+///   excluded: the scenario's mount or, without one, the floor.
 ///
 /// Physics: 1 ms steps, Euler. MuJoCo's Euler takes the joints' damping implicitly, which is all
 /// the damping these models have, and holds the motors' torque over the step as a 1 kHz controller

@@ -114,11 +114,11 @@ const OccupancyGrid& ScanMap::Update(const Scan& scan) {
   return map_;
 }
 
-void FillObjects(const std::vector<ObjectObservation>& objects, OccupancyGrid* occupancy) {
+void FillObjects(const std::vector<ObjectObservation>& objects, CellRule rule,
+                 OccupancyGrid* occupancy) {
   for (const ObjectObservation& object : objects) {
-    VisitCellsNear(occupancy->spec, object, 0, [&](std::size_t cell, double distance_m) {
-      if (distance_m < 0) occupancy->cells[cell] = 1;
-    });
+    VisitFilledCells(occupancy->spec, object.shape, object.X_WO, rule, /*skin_m=*/0,
+                     [&](std::size_t cell) { occupancy->cells[cell] = 1; });
   }
 }
 

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "sidestep/core/cell_touch.h"
 #include "sidestep/core/grid.h"
 #include "sidestep/core/observations.h"
 #include "sidestep/sdf/map/occupancy_from_scan.h"
@@ -48,7 +49,8 @@ class ScanMap {
 void VisitCellsOnTheWay(const GridSpec& grid_W, const Eigen::Vector3d& p_WStart,
                         const Eigen::Vector3d& p_WEnd, std::vector<std::size_t>* cells);
 
-/// Fills the cells whose centres are inside the named objects.
-void FillObjects(const std::vector<ObjectObservation>& objects, OccupancyGrid* occupancy);
+/// Fills the cells of the named objects.
+void FillObjects(const std::vector<ObjectObservation>& objects, CellRule rule,
+                 OccupancyGrid* occupancy);
 
 }  // namespace sidestep::sdf

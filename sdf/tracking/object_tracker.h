@@ -17,8 +17,12 @@
 namespace sidestep::sdf {
 
 struct ObjectTrackerOptions {
-  double max_distance_m = 0;   ///< > 0; objects' fields are padded for this
-  double max_speed_m_s = 4;    ///< the gate: a thing cannot have gone further since last seen
+  double max_distance_m = 0;  ///< > 0; objects' fields are padded for this
+  /// The gate: since last seen, a thing is at most this far from where it should be, and two cells
+  /// for what cells round. A thing that is new should be where it was, so it is followed from a
+  /// speed of 0 up to max_speed_m_s + 2 cells * the rate of scans (6.4 m/s with 4 cm and 30 Hz); a
+  /// faster one is new in each scan and believed to rest. Docs: docs/prediction.md.
+  double max_speed_m_s = 4;
   double moved_cells = 0.75;   ///< a thing that is this far from where it began is moving
   HorizonOffset settle{0.06};  ///< a thing seen for this long that has not moved is static
   HorizonOffset rest{0.4};     ///< the same for a thing that is known to have moved before

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -10,6 +11,8 @@
 #include <map>
 #include <stdexcept>
 #include <vector>
+
+#include "sidestep/sdf/shape_field.h"
 
 namespace sidestep::bench {
 namespace {
@@ -21,6 +24,7 @@ scenarios::Scenario MakeScenario() {
   scenarios::Scenario scenario;
   scenario.grid = {Eigen::Vector3d::Constant(-0.8), kCell_m, {41, 41, 41}};
   scenario.static_boxes = {{"cube", Pose(), Eigen::Vector3d::Constant(0.4)}};
+  scenario.floor_m = -9;
   scenario.seed = 5;
   return scenario;
 }
@@ -156,7 +160,7 @@ TEST(FieldAudit, NamesTheMostWrongPlaceOutsideSolidsAndItsTime) {
   EXPECT_EQ(worst.t_cycle, EpisodeTime(0.1));
   EXPECT_EQ(worst.t, EpisodeTime(0.6));
   EXPECT_TRUE(is_corner(worst.p_W, worst.t));
-  EXPECT_NEAR(worst.truth_m, Truth(worst.p_W, worst.t), 1e-12);
+  EXPECT_NEAR(worst.truth_m, std::min(Truth(worst.p_W, worst.t), kClamp_m), 1e-12);
   EXPECT_NEAR(worst.field_m, std::min(worst.truth_m, kClamp_m) - 0.2, 1e-12);
 
   const AuditGrids& grids = audit.worst_grids();
@@ -166,6 +170,49 @@ TEST(FieldAudit, NamesTheMostWrongPlaceOutsideSolidsAndItsTime) {
     EXPECT_NEAR(grids.truth_W.At(i, j, k), std::min(Truth(p_W, worst.t), kClamp_m), 1e-6);
     EXPECT_NEAR(grids.field_W.At(i, j, k), field.Sample(p_W, worst.t).distance_m, 1e-6);
   }
+}
+
+TEST(FieldAudit, TellsHowMuchTooFarTheFieldSaidApartFromTooNear) {
+  for (const double off_m : {-0.02, 0.01}) {
+    FieldAudit audit(MakeScenario(), {0}, 2000);
+    const FalseField field([&](double, const Eigen::Vector3d&, EpisodeTime) { return off_m; });
+    audit.Look(EpisodeTime(0), field, FlyingBall());
+    for (const AuditRow& row : audit.Rows()) {
+      EXPECT_NEAR(row.max_m, std::abs(off_m), 1e-12);
+      EXPECT_NEAR(row.too_far_max_m, std::max(off_m, 0.0), 1e-12);
+    }
+  }
+}
+
+TEST(FieldAudit, HoldsTheFloorForTrue) {
+  scenarios::Scenario scenario = MakeScenario();
+  scenario.floor_m = -0.55;
+  const auto with_floor = [&](const Eigen::Vector3d& p, double truth_m) {
+    return std::min({truth_m, p.z() + 0.55, kClamp_m}) - std::min(truth_m, kClamp_m);
+  };
+  FieldAudit audit(scenario, {0}, 3000);
+  audit.Look(EpisodeTime(0), FalseField([&](double truth_m, const Eigen::Vector3d& p, EpisodeTime) {
+               return with_floor(p, truth_m);
+             }),
+             FlyingBall());
+  for (const AuditRow& row : audit.Rows()) EXPECT_NEAR(row.max_m, 0, 1e-12) << ToString(row.zone);
+}
+
+TEST(FieldAudit, OfAWorldWithoutAnythingHasNoErrorAndNoInfinity) {
+  scenarios::Scenario scenario = MakeScenario();
+  scenario.static_boxes.clear();
+  class Nothing final : public robot::WorldTruth {
+   public:
+    std::vector<ObjectObservation> ObstaclesAt(EpisodeTime) const override { return {}; }
+    std::vector<TruthSample> TakeSamples() override { return {}; }
+  };
+  FieldAudit audit(scenario, {0}, 100);
+  audit.Look(EpisodeTime(0), sdf::ShapeField({}, {}, kClamp_m), Nothing());
+  ASSERT_EQ(audit.Rows().size(), 1u);
+  EXPECT_EQ(audit.Rows()[0].zone, AuditZone::kBeyond);
+  EXPECT_EQ(audit.Rows()[0].max_m, 0);
+  EXPECT_EQ(audit.worst().field_m, kClamp_m);
+  EXPECT_EQ(audit.worst().truth_m, kClamp_m);
 }
 
 TEST(FieldAudit, RefusesTimesInThePastAndNoPoints) {

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sidestep/core/shape.h"
+#include "sidestep/bench/true_world.h"
 #include "sidestep/core/trajectory.h"
 
 namespace sidestep::bench {
@@ -20,52 +20,6 @@ void BreakIfAsked(const KinematicWorld& world, const std::string& who, EpisodeTi
   if (world.breaks != who || now.seconds() < world.breaks_at_s) return;
   throw std::runtime_error("the " + who + " broke");
 }
-
-struct Solid {
-  Shape shape;
-  Pose X_OW;
-};
-
-double Distance(const std::vector<Solid>& solids, const Eigen::Vector3d& p_W) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Solid& solid : solids) {
-    least = std::min(least, SignedDistance(solid.shape, solid.X_OW * p_W));
-  }
-  return least;
-}
-
-// The scenario's shapes at any time.
-class Shapes {
- public:
-  explicit Shapes(const scenarios::Scenario& scenario) : scenario_(scenario) {}
-
-  std::vector<ObjectObservation> MovingAt(EpisodeTime t) const {
-    std::vector<ObjectObservation> obstacles;
-    for (const scenarios::MovingObstacle& obstacle : scenario_.moving_obstacles) {
-      ObjectObservation& seen = obstacles.emplace_back();
-      seen.id = obstacle.name;
-      seen.t = t;
-      seen.X_WO = PoseAt(obstacle, t);
-      seen.shape = obstacle.shape;
-    }
-    return obstacles;
-  }
-
-  // Everything solid at one moment.
-  std::vector<Solid> SolidsAt(EpisodeTime t) const {
-    std::vector<Solid> solids;
-    for (const scenarios::MovingObstacle& obstacle : scenario_.moving_obstacles) {
-      solids.push_back({obstacle.shape, PoseAt(obstacle, t).Inverse()});
-    }
-    for (const scenarios::StaticBox& box : scenario_.static_boxes) {
-      solids.push_back({Box{box.size_m}, box.X_WO.Inverse()});
-    }
-    return solids;
-  }
-
- private:
-  const scenarios::Scenario& scenario_;
-};
 
 class Robot final : public robot::RobotInterface {
  public:
@@ -129,7 +83,9 @@ class Robot final : public robot::RobotInterface {
 class CellSensor final : public robot::Sensor {
  public:
   CellSensor(KinematicWorld& world, const scenarios::Scenario& scenario)
-      : world_(world), scenario_(scenario), shapes_(scenario) {}
+      : world_(world),
+        scenario_(scenario),
+        solids_({StaticShapes(scenario), {}}, TrueMotions(scenario)) {}
 
   EpisodeTime NextDue() const override {
     return EpisodeTime(world_.sees ? num_scans_ / scenario_.sensor.rate_hz
@@ -144,14 +100,13 @@ class CellSensor final : public robot::Sensor {
       return std::nullopt;
     }
     ++num_scans_;
-    const std::vector<Solid> solids = shapes_.SolidsAt(t);
     std::vector<Eigen::Vector3d> points;
     const auto [nx, ny, nz] = scenario_.grid.size;
     for (int k = 0; k < nz; ++k) {
       for (int j = 0; j < ny; ++j) {
         for (int i = 0; i < nx; ++i) {
           const Eigen::Vector3d p_W = scenario_.grid.Center(i, j, k);
-          if (Distance(solids, p_W) <= 0) points.push_back(p_W);
+          if (solids_.Distance(p_W, t) <= 0) points.push_back(p_W);
         }
       }
     }
@@ -167,7 +122,7 @@ class CellSensor final : public robot::Sensor {
  private:
   KinematicWorld& world_;
   const scenarios::Scenario& scenario_;
-  Shapes shapes_;
+  sdf::ShapeField solids_;  // without the floor
   int num_scans_ = 0;
 };
 
@@ -176,10 +131,22 @@ class SphereTruth final : public robot::WorldTruth {
  public:
   SphereTruth(const KinematicWorld& world, const Robot& robot, const robot::RobotModel& model,
               const scenarios::Scenario& scenario)
-      : world_(world), robot_(robot), model_(model), shapes_(scenario) {}
+      : world_(world),
+        robot_(robot),
+        model_(model),
+        scenario_(scenario),
+        true_world_(TrueWorld(scenario, std::numeric_limits<double>::infinity())) {}
 
   std::vector<ObjectObservation> ObstaclesAt(EpisodeTime t) const override {
-    return shapes_.MovingAt(t);
+    std::vector<ObjectObservation> obstacles;
+    for (const scenarios::MovingObstacle& obstacle : scenario_.moving_obstacles) {
+      ObjectObservation& seen = obstacles.emplace_back();
+      seen.id = obstacle.name;
+      seen.t = t;
+      seen.X_WO = PoseAt(obstacle, t);
+      seen.shape = obstacle.shape;
+    }
+    return obstacles;
   }
 
   std::vector<TruthSample> TakeSamples() override {
@@ -190,10 +157,9 @@ class SphereTruth final : public robot::WorldTruth {
       TruthSample& sample = samples.emplace_back();
       sample.t = tick.t;
       sample.clearance_m = std::numeric_limits<double>::infinity();
-      const std::vector<Solid> solids = shapes_.SolidsAt(tick.t);
       const robot::SphereCenters centers = model_.ComputeSphereCenters(tick.q, false);
       for (Eigen::Index s = 1; s < centers.p_WS.cols(); ++s) {
-        const double distance_m = Distance(solids, centers.p_WS.col(s));
+        const double distance_m = true_world_.Distance(centers.p_WS.col(s), tick.t);
         sample.clearance_m = std::min(sample.clearance_m, distance_m - model_.sphere_radii_m()(s));
       }
       sample.in_contact = sample.clearance_m <= 0;
@@ -207,7 +173,8 @@ class SphereTruth final : public robot::WorldTruth {
   const KinematicWorld& world_;
   const Robot& robot_;
   const robot::RobotModel& model_;
-  Shapes shapes_;
+  const scenarios::Scenario& scenario_;
+  sdf::ShapeField true_world_;
   std::size_t judged_ = 0;
 };
 

@@ -3,6 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "sidestep/core/input_error.h"
 
 namespace sidestep::bench {
@@ -79,6 +84,63 @@ TEST(ResolveTask, RefusesAStartInsideAnObstacle) {
   std::get<scenarios::LinearMotion>(scenario.moving_obstacles[0].motion).start_m = {0, -0.3, 0.9};
   EXPECT_THAT(Complaint(scenario), ::testing::AllOf(::testing::HasSubstr("task.start: the robot's"),
                                                     ::testing::EndsWith("inside 'hsr'")));
+}
+
+// A Panda bolted to the floor.
+scenarios::Scenario OnTheFloor() {
+  scenarios::Scenario scenario = Walkway();
+  scenario.X_WB = Pose();
+  scenario.mount = "";
+  scenario.static_boxes.clear();
+  scenario.moving_obstacles.clear();
+  scenario.start_name = "ready";
+  return scenario;
+}
+
+TEST(ResolveTask, LetsTheRobotStandOnTheFloorWithoutAMount) {
+  scenarios::Scenario scenario = OnTheFloor();
+  scenario.goal_name = "ready";
+  EXPECT_EQ(Complaint(scenario), "was accepted");
+  // The mount is what it stands on, if there is one: then its foot may not be in the floor.
+  scenario.static_boxes = {{"plate", Pose::Translation({0, 0, -0.5}), {1, 1, 1}}};
+  scenario.mount = "plate";
+  EXPECT_THAT(Complaint(scenario), ::testing::EndsWith("inside 'floor'"));
+}
+
+class BadTask : public ::testing::TestWithParam<std::string> {};
+
+std::vector<std::string> BadTasks() {
+  return scenarios::ScenarioNames(kSource + "/tests/data/bad_tasks");
+}
+
+TEST_P(BadTask, IsRefusedAsItsFirstLineExpects) {
+  const std::string folder = kSource + "/tests/data/bad_tasks/";
+  const std::string path = folder + GetParam() + ".yaml";
+  std::string expected;
+  std::ifstream stream(path);
+  ASSERT_TRUE(std::getline(stream, expected));
+  ASSERT_EQ(expected.rfind("# expect: ", 0), 0u) << "the first line must say what is expected";
+  EXPECT_EQ(Complaint(scenarios::LoadScenario(path)), folder + expected.substr(10));
+}
+
+INSTANTIATE_TEST_SUITE_P(Data, BadTask, ::testing::ValuesIn(BadTasks()),
+                         [](const auto& test) { return test.param; });
+
+TEST(ResolveTask, RefusesAStartOrGoalBelowTheFloor) {
+  scenarios::Scenario scenario = OnTheFloor();
+  scenario.goal_name = "";
+  scenario.q_goal.resize(7);
+  scenario.q_goal << 0, 1.5, 0, -0.9, 0, 2.2, 0.785;
+  EXPECT_THAT(Complaint(scenario),
+              ::testing::AllOf(::testing::HasSubstr("hsr_walkway.yaml:14: task.goal: the robot's"),
+                               ::testing::EndsWith("mm inside 'floor'")));
+  std::swap(scenario.start_name, scenario.goal_name);
+  scenario.q_start = scenario.q_goal;
+  EXPECT_THAT(Complaint(scenario),
+              ::testing::AllOf(::testing::HasSubstr("hsr_walkway.yaml:13: task.start: the robot's"),
+                               ::testing::EndsWith("mm inside 'floor'")));
+  scenario.floor_m = -0.5;
+  EXPECT_EQ(Complaint(scenario), "was accepted");
 }
 
 }  // namespace

@@ -118,6 +118,16 @@ TEST(FreePathSearch, FindsTheMotionThatFullKnowledgeFinds) {
   EXPECT_LT((path.trajectory.q.col(last) - scenario.q_goal).norm(), 1e-2);
 }
 
+TEST(FreePathSearch, KnowsTheFloor) {
+  scenarios::Scenario scenario = Load("hsr_walkway");
+  const robot::RobotModel robot = RobotOf(scenario);
+  ResolveTask(scenario, robot);
+  scenario.floor_m = 0.6;  // the hand ends 10 cm above the tables, at 0.4 m
+  const FreePath path = SearchFreePath(scenario, robot, 1, 1);
+  EXPECT_FALSE(path.found);
+  EXPECT_LT(path.clearance_m, 0);
+}
+
 TEST(FreePathSearch, FindsNoneToAGoalOnWhichSomethingStands) {
   scenarios::Scenario scenario = Load("hsr_walkway");
   const robot::RobotModel robot = RobotOf(scenario);

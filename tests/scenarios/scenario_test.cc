@@ -68,6 +68,7 @@ task: {start: [0.1, 0.2], goal: [0.3333333333333333, -0.2], dwell_s: 0.3}
 horizon: {duration_s: 2.5, step_s: 0.25}
 workspace: {first_center_m: [-0.5, 0.25, 0], cell_m: 0.03, cells: [10, 11, 12]}
 floor_m: -0.6
+static_world: exact
 static_boxes:
   - {name: slanted, center_m: [1, 2, 3], rpy_rad: [0, 0.4, 0], size_m: [0.1, 0.2, 0.3]}
 moving_obstacles:
@@ -87,6 +88,7 @@ replanning: {rate_hz: 4, latency_s: 0.07}
 sensor:
   name: occupancy
   rate_hz: 15
+  cells: centre
   latency_s: 0.05
   jitter_s: 0.01
   dropout: 0.2
@@ -113,6 +115,8 @@ seed: 42
   EXPECT_TRUE(again.acceleration_limits);
   EXPECT_EQ(again.latency_s, 0.07);
   EXPECT_EQ(again.seed, 42u);
+  EXPECT_EQ(again.static_world, StaticWorld::kExact);
+  EXPECT_EQ(again.sensor.cells, CellRule::kCentre);
   EXPECT_EQ(ToYaml(again.sensor), ToYaml(scenario.sensor));
   EXPECT_EQ(again.sensor.dropout, 0.2);
   EXPECT_EQ(again.sensor.noise->position_noise_m, 0.003);

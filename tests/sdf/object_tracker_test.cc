@@ -305,5 +305,23 @@ TEST(ObjectTracker, RefusesAnotherGridAndTimeThatDoesNotGoOn) {
   EXPECT_THROW(ObjectTracker(GridSpec(), {.max_distance_m = 0.3}), std::invalid_argument);
 }
 
+// Whole cells a scan: the gate of a thing just seen is 4 m/s and two cells, 5.33 cells at 30 Hz.
+TEST(ObjectTracker, FollowsAThingUpToItsGateAndNoFaster) {
+  for (const int cells_a_scan : {1, 3, 5, 6, 8}) {
+    SCOPED_TRACE(cells_a_scan);
+    const double speed_m_s = 0.04 * cells_a_scan * kRate_hz;
+    const bool is_within = speed_m_s <= 4 + 2 * 0.04 * kRate_hz;
+    Replay replay(WalkwayGrid(),
+                  {MovingBox({0.24, 0.32, 0.64}, {0, 2.4, 0.12}, {0, -speed_m_s, 0})});
+    replay.RunUntil(6.5 / kRate_hz);
+    if (is_within) {
+      ASSERT_THAT(replay.objects(), SizeIs(1));
+      EXPECT_NEAR(Velocity(*replay.objects()[0]).y(), -speed_m_s, 1e-9);
+    } else {
+      EXPECT_THAT(replay.objects(), IsEmpty());
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sidestep::sdf

@@ -144,17 +144,23 @@ TEST(UnseenSpace, HasAWordForEachKind) {
   EXPECT_THROW(UnseenSpaceFromString("fog"), std::invalid_argument);
 }
 
-TEST(FillObjects, FillsTheCellsWhoseCentresAreInsideATurnedShape) {
+TEST(FillObjects, FillsTheCellsOfATurnedShapeByTheRule) {
   ObjectObservation object;
   object.shape = Box{{0.6, 0.3, 0.4}};
   object.X_WO = Pose::FromRollPitchYaw({0.3, 0.2, 0.9}, {0.11, -0.52, 0.7});
-  OccupancyGrid grid(kGrid);
-  FillObjects({object}, &grid);
-  for (std::size_t cell = 0; cell < grid.cells.size(); ++cell) {
-    const Eigen::Vector3d p_OCell = object.X_WO.Inverse() * kGrid.CenterOf(cell);
-    EXPECT_EQ(grid.cells[cell] != 0, SignedDistance(object.shape, p_OCell) < 0);
+  OccupancyGrid centres(kGrid), touched(kGrid);
+  FillObjects({object}, CellRule::kCentre, &centres);
+  FillObjects({object}, CellRule::kTouched, &touched);
+  const CubeTouch touches(object.shape, object.X_WO.rotation().toRotationMatrix(),
+                          object.X_WO.translation(), kGrid.cell_m);
+  for (std::size_t cell = 0; cell < centres.cells.size(); ++cell) {
+    const Eigen::Vector3d p_WCell = kGrid.CenterOf(cell);
+    EXPECT_EQ(centres.cells[cell] != 0,
+              SignedDistance(object.shape, object.X_WO.Inverse() * p_WCell) < 0);
+    EXPECT_EQ(touched.cells[cell] != 0, touches(p_WCell));
   }
-  EXPECT_GT(grid.CountFilled(), 40u);
+  EXPECT_GT(centres.CountFilled(), 40u);
+  EXPECT_GT(touched.CountFilled(), centres.CountFilled());
 }
 
 }  // namespace

@@ -33,13 +33,8 @@ SceneBox PassingBox() { return MovingBox(kBoxSize_m, kBoxStart, kBoxVelocity); }
 
 Scan ScanAt(EpisodeTime t) { return MakeScan(Rasterise({Shelf(), PassingBox()}, Grid(), t), t); }
 
-std::vector<ObjectObservation> Truth(EpisodeTime t) {
-  ObjectObservation box;
-  box.id = "box";
-  box.t = t;
-  box.X_WO = Pose::Translation(PassingBox().p_WO(t));
-  box.shape = Box{kBoxSize_m};
-  return {box};
+std::vector<MovingShape> Truth() {
+  return {{Box{kBoxSize_m}, [](EpisodeTime t) { return Pose::Translation(PassingBox().p_WO(t)); }}};
 }
 
 WorldModelOptions Options(Knowledge knowledge) {
@@ -48,7 +43,7 @@ WorldModelOptions Options(Knowledge knowledge) {
   options.grid = Grid();
   options.max_distance_m = kClamp_m;
   options.predictor = "two_frame";  // exact for whole cells a frame
-  if (knowledge == Knowledge::kFullKnowledge) options.true_obstacles = &Truth;
+  if (knowledge == Knowledge::kFullKnowledge) options.true_obstacles = Truth();
   return options;
 }
 
@@ -146,13 +141,48 @@ TEST_P(EveryKnowledge, NeedsAScanAndTakesScansInOrder) {
 
 TEST_P(EveryKnowledge, AnswersTheClampInAnEmptyWorld) {
   WorldModelOptions options = Options(GetParam());
-  options.true_obstacles = [](EpisodeTime) { return std::vector<ObjectObservation>(); };
+  options.true_obstacles.emplace();
   const auto world = MakeWorldModel(options);
   world->Observe(Scan());
   const DistanceSample sample = world->MakeField()->Sample({0, 0, 0}, EpisodeTime(0));
   EXPECT_EQ(sample.distance_m, kClamp_m);
   EXPECT_TRUE(sample.in_grid);
   EXPECT_THAT(world->DescribeObjects({EpisodeTime(0)}), IsEmpty());
+}
+
+TEST_P(EveryKnowledge, KnowsTheFloorExactlyAlsoOutsideTheGrid) {
+  WorldModelOptions options = Options(GetParam());
+  options.exact.half_spaces = {{Eigen::Vector3d::UnitZ(), -0.513}};
+  const auto world = MakeWorldModel(options);
+  world->Observe(ScanAt(EpisodeTime(0)));
+  const auto field = world->MakeField();
+  for (const Eigen::Vector3d& p : {Eigen::Vector3d(0, -0.9, -0.4), Eigen::Vector3d(0.3, 0.1, -0.6),
+                                   Eigen::Vector3d(9, 9, -0.5), Eigen::Vector3d(0, 0, -7)}) {
+    const DistanceSample sample = field->Sample(p, EpisodeTime(0.7));
+    EXPECT_NEAR(sample.distance_m, p.z() + 0.513, 1e-12) << p.transpose();
+    EXPECT_EQ(sample.gradient_W, Eigen::Vector3d::UnitZ());
+  }
+}
+
+TEST_P(EveryKnowledge, KnowsAStaticShapeBetterThanByCellsIfToldOfIt) {
+  // The shelf is scanned as cells; in truth it is 1 cm larger all round than what they say.
+  const Box shelf{Shelf().size_m + Eigen::Vector3d::Constant(0.02)};
+  WorldModelOptions options = Options(GetParam());
+  options.exact.shapes = {{shelf, Pose::Translation(Shelf().p_WO(EpisodeTime(0)))}};
+  for (const CellRule rule : {CellRule::kTouched, CellRule::kCentre}) {
+    options.cells = rule;
+    const auto world = MakeWorldModel(options);
+    world->Observe(ScanAt(EpisodeTime(0)));
+    const auto field = world->MakeField();
+    for (double y = -0.7; y < 0.4; y += 0.0137) {
+      for (double z = 0.0; z < 0.4; z += 0.0137) {
+        const Eigen::Vector3d p(-0.4, y, z);
+        const double exact_m = SignedDistance(shelf, p - Shelf().p_WO(EpisodeTime(0)));
+        ASSERT_NEAR(field->Sample(p, EpisodeTime(0)).distance_m, std::min(exact_m, kClamp_m), 1e-12)
+            << p.transpose();
+      }
+    }
+  }
 }
 
 TEST_P(EveryKnowledge, ReportsItsTimesOnce) {
@@ -206,6 +236,61 @@ TEST(WorldModel, TakesNothingOfATrueObstacleForStaticUnderFullKnowledge) {
             kClamp_m);
 }
 
+// A sheet and a pole between cells, as a sensor sees them that fills every cell they touch.
+TEST(WorldModel, LeavesNoGhostOfThinThingsUnderFullKnowledge) {
+  const std::vector<Shape> shapes = {Box{{0.5, 0.02, 0.5}}, Cylinder{0.015, 0.6},
+                                     Capsule{0.01, 0.5}};
+  for (const Shape& shape : shapes) {
+    for (int trial = 0; trial < 20; ++trial) {
+      SCOPED_TRACE(ShapeName(shape) + " " + std::to_string(trial));
+      const auto pose = [trial](EpisodeTime t) {
+        return Pose::FromRollPitchYaw({0.1 * trial, 0.05 * trial, 0},
+                                      {0.0013 * trial, 0.5 - t.seconds(), 0.0029 * trial});
+      };
+      WorldModelOptions options = Options(Knowledge::kFullKnowledge);
+      options.true_obstacles = {{shape, pose}};
+      OccupancyGrid seen(Grid());
+      FillObjects({{"thin", EpisodeTime(0), pose(EpisodeTime(0)), {}, shape}}, CellRule::kTouched,
+                  &seen);
+      ASSERT_GT(seen.CountFilled(), 0u);
+      const auto world = MakeWorldModel(options);
+      world->Observe(MakeScan(seen, EpisodeTime(0)));
+      const auto field = world->MakeField();
+      for (std::size_t cell = 0; cell < seen.cells.size(); ++cell) {
+        if (seen.cells[cell] == 0) continue;
+        // A second later it is a metre on.
+        ASSERT_EQ(field->Sample(Grid().CenterOf(cell), EpisodeTime(1)).distance_m, kClamp_m);
+      }
+    }
+  }
+}
+
+TEST(WorldModel, ErasesTheCellsOfASurfaceUnderFullKnowledgeWhateverTheRule) {
+  // A camera's points lie on the box, in cells whose centres may be well outside it.
+  for (const CellRule rule : {CellRule::kTouched, CellRule::kCentre}) {
+    WorldModelOptions options = Options(Knowledge::kFullKnowledge);
+    options.cells = rule;
+    Scan scan;
+    scan.kind = ScanKind::kSurface;
+    scan.X_WC = Pose::Translation({0, -0.9, 0.9});
+    std::vector<Eigen::Vector3d> points;
+    for (double x = -0.11; x < 0.12; x += 0.02) {
+      for (double z = -0.19; z < 0.44; z += 0.02) points.push_back({x, 1.2 - 0.16 - 1e-7, z});
+    }
+    scan.p_CP.resize(3, static_cast<Eigen::Index>(points.size()));
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      scan.p_CP.col(static_cast<Eigen::Index>(n)) = scan.X_WC.Inverse() * points[n];
+    }
+    options.grid.first_center_m.y() += 0.013;  // faces between centres
+    const auto world = MakeWorldModel(options);
+    world->Observe(scan);
+    const auto field = world->MakeField();
+    for (const Eigen::Vector3d& p : points) {
+      EXPECT_EQ(field->Sample(p, EpisodeTime(2)).distance_m, kClamp_m);
+    }
+  }
+}
+
 TEST(WorldModel, RefusesOptionsThatMeanNothing) {
   WorldModelOptions options = Options(Knowledge::kPrediction);
   options.predictor = "crystal_ball";
@@ -219,7 +304,7 @@ TEST(WorldModel, RefusesOptionsThatMeanNothing) {
   options.grid.cell_m = 0;
   EXPECT_THAT([&] { MakeWorldModel(options); }, Throws<std::invalid_argument>());
   options = Options(Knowledge::kFullKnowledge);
-  options.true_obstacles = nullptr;
+  options.true_obstacles.reset();
   EXPECT_THAT([&] { MakeWorldModel(options); }, Throws<std::invalid_argument>());
 }
 

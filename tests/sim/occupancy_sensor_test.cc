@@ -29,8 +29,11 @@ OccupancyGrid GridOf(const Scan& scan, const GridSpec& spec) {
   return grid;
 }
 
-TEST(OccupancySensor, SeesTheCentresOfTheCellsThatAreFilledAtItsTime) {
-  const scenarios::Scenario scenario = BusyScenario();
+class OccupancySensorBy : public testing::TestWithParam<CellRule> {};
+
+TEST_P(OccupancySensorBy, SeesTheCentresOfTheCellsThatAreFilledAtItsTime) {
+  scenarios::Scenario scenario = BusyScenario();
+  scenario.sensor.cells = GetParam();
   Simulation simulation(scenario, TwoLink(scenario), kTestModels);
   for (int k = 0; k < 20; ++k) {
     simulation.robot().AdvanceTo(simulation.sensor().NextDue());
@@ -43,12 +46,15 @@ TEST(OccupancySensor, SeesTheCentresOfTheCellsThatAreFilledAtItsTime) {
           PoseAt(obstacle, scan->t).translation();
     }
     const Simulation still(then, TwoLink(then), kTestModels);
-    const OccupancyGrid wanted =
-        RasteriseWorld(still.world().model(), still.world().data(), scenario.grid);
+    const OccupancyGrid wanted = RasteriseWorld(still.world().model(), still.world().data(),
+                                                scenario.grid, scenario.sensor.cells);
     EXPECT_EQ(GridOf(*scan, scenario.grid).cells, wanted.cells) << "capture " << k;
     EXPECT_EQ(static_cast<std::size_t>(scan->p_CP.cols()), wanted.CountFilled());  // none twice
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Rules, OccupancySensorBy,
+                         testing::Values(CellRule::kTouched, CellRule::kCentre));
 
 TEST(OccupancySensor, CapturesAtItsRateOnTicksOfTheWorld) {
   const scenarios::Scenario scenario = BusyScenario();

@@ -88,7 +88,7 @@ TEST_P(EveryGeomType, MarksExactlyTheCellsWhoseCentreIsInside) {
     std::uniform_real_distribution<float> height(0, 1);
     for (int i = 0; i < m.model->nhfielddata; ++i) m.model->hfield_data[i] = height(generator);
   }
-  const Rasteriser rasteriser(*m.model);
+  const Rasteriser rasteriser(*m.model, CellRule::kCentre);
   for (int trial = 0; trial < 12; ++trial) {
     const Pose X_WO = RandomPose(/*reach_m=*/0.6, &generator);
     m.Place(0, X_WO);
@@ -112,12 +112,86 @@ TEST_P(EveryGeomType, MarksExactlyTheCellsWhoseCentreIsInside) {
   }
 }
 
+// What is inside, anywhere in the cell, by a lattice of points: where one is, the cell is filled;
+// a filled cell has one within a step of the lattice around it.
+TEST_P(EveryGeomType, MarksTheCellsThatItReachesIntoIfToldSo) {
+  const std::string geom = std::string("<geom ") + GetParam().geom + "/>";
+  SmallModel m("<body mocap='true'>" + geom + "</body>",
+               std::string("<asset>") + GetParam().asset + "</asset>");
+  std::mt19937 generator(8);
+  if (m.model->nhfielddata > 0) {
+    std::uniform_real_distribution<float> height(0, 1);
+    for (int i = 0; i < m.model->nhfielddata; ++i) m.model->hfield_data[i] = height(generator);
+  }
+  const GridSpec spec{{-0.78, -0.8, -0.82}, 0.1, {17, 16, 16}};
+  const Rasteriser rasteriser(*m.model, CellRule::kTouched);
+  const Rasteriser centres(*m.model, CellRule::kCentre);
+  constexpr int kSteps = 20;
+  const double step_m = spec.cell_m / kSteps;
+  for (int trial = 0; trial < 3; ++trial) {
+    const Pose X_WO = RandomPose(/*reach_m=*/0.4, &generator);
+    m.Place(0, X_WO);
+    OccupancyGrid grid(spec), by_centres(spec);
+    rasteriser.Fill(*m.data, 0, &grid);
+    centres.Fill(*m.data, 0, &by_centres);
+    int num_missed = 0, num_idle = 0;
+    for (std::size_t cell = 0; cell < grid.cells.size(); ++cell) {
+      EXPECT_LE(by_centres.cells[cell], grid.cells[cell]);
+      bool inside = false, near = false;
+      for (int n = 0; n < (kSteps + 3) * (kSteps + 3) * (kSteps + 3) && !inside; ++n) {
+        const int at[] = {n % (kSteps + 3) - 1, n / (kSteps + 3) % (kSteps + 3) - 1,
+                          n / ((kSteps + 3) * (kSteps + 3)) - 1};
+        const Vector3d from_corner = step_m * Vector3d(at[0], at[1], at[2]);
+        const Vector3d p_WQ =
+            spec.CenterOf(cell) + from_corner - Vector3d::Constant(spec.cell_m / 2);
+        if (GetParam().inside(m, X_WO.Inverse() * p_WQ) > -1e-5) continue;
+        near = true;
+        inside = *std::min_element(at, at + 3) >= 0 && *std::max_element(at, at + 3) <= kSteps;
+      }
+      num_missed += inside && grid.cells[cell] == 0;
+      num_idle += !near && grid.cells[cell] != 0;
+    }
+    EXPECT_EQ(num_missed, 0) << "of " << grid.CountFilled() << " cells, trial " << trial;
+    EXPECT_LE(num_idle, static_cast<int>(grid.CountFilled()) / 100);  // a tip between the points
+    EXPECT_GT(grid.CountFilled(), by_centres.CountFilled());
+  }
+}
+
+TEST(OccupancyRasteriser, FillsNothingBeyondTheFacesOfABoxOfWholeCells) {
+  SmallModel m("<body mocap='true'><geom type='box' size='0.24 0.26 0.6'/></body>");
+  const GridSpec spec{{-1, -1, -1}, 0.04, {96, 96, 96}};
+  m.Place(0, Pose::Translation({0.02, 0.0, 0.62}));  // its faces are faces of cells
+  OccupancyGrid grid(spec);
+  Rasteriser(*m.model, CellRule::kTouched).Fill(*m.data, 0, &grid);
+  EXPECT_EQ(grid.CountFilled(), 12u * 13 * 30);
+}
+
+TEST(OccupancyRasteriser, LosesNoThinSheetOrPoleThatIsTouched) {
+  SmallModel m(
+      "<body mocap='true'><geom type='box' size='0.25 0.01 0.25'/></body>"
+      "<body mocap='true'><geom type='cylinder' size='0.015 0.3'/></body>");
+  const GridSpec spec{{-1, -1, -1}, 0.04, {50, 50, 50}};
+  const Rasteriser touched(*m.model, CellRule::kTouched), centres(*m.model, CellRule::kCentre);
+  for (int geom = 0; geom < 2; ++geom) {
+    int num_lost = 0;
+    for (int step = 0; step < 40; ++step) {
+      m.Place(geom, Pose::Translation({0.001 * step, 0.001 * step, 0}));
+      OccupancyGrid grid(spec), by_centres(spec);
+      touched.Fill(*m.data, geom, &grid);
+      centres.Fill(*m.data, geom, &by_centres);
+      EXPECT_GT(grid.CountFilled(), 0u);
+      num_lost += by_centres.CountFilled() == 0;
+    }
+    EXPECT_GT(num_lost, 10) << "centres see it, too: not a test";
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(OccupancyRasteriser, EveryGeomType, testing::ValuesIn(kCases),
                          [](const auto& test) { return test.param.name; });
 
 int CountFilled(const SmallModel& m, const GridSpec& spec) {
   OccupancyGrid grid(spec);
-  Rasteriser(*m.model).Fill(*m.data, 0, &grid);
+  Rasteriser(*m.model, CellRule::kCentre).Fill(*m.data, 0, &grid);
   return static_cast<int>(grid.CountFilled());
 }
 
@@ -138,7 +212,7 @@ TEST(OccupancyRasteriser, GivesACellOnTheFaceOfTwoBoxesToOneOfThem) {
       "<body mocap='true'><geom type='box' size='0.2 0.2 0.2'/></body>"
       "<body mocap='true'><geom type='box' size='0.2 0.2 0.2'/></body>");
   const GridSpec spec{{-1, -1, -1}, 0.1, {21, 21, 21}};  // the faces run through centres of cells
-  const Rasteriser rasteriser(*m.model);
+  const Rasteriser rasteriser(*m.model, CellRule::kCentre);
   for (int axis = 0; axis < 3; ++axis) {
     m.Place(1, Pose::Translation(0.4 * Vector3d::Unit(axis)));
     OccupancyGrid first(spec), second(spec), both(spec);
@@ -160,8 +234,8 @@ TEST(OccupancyRasteriser, TreatsTheFacesOfABoxMeshLikeThoseOfABox) {
       "0.3 0.2 -0.1  -0.3 -0.2 0.1  0.3 -0.2 0.1  -0.3 0.2 0.1  0.3 0.2 0.1'/></asset>");
   const GridSpec spec{{-1, -1, -1}, 0.1, {21, 21, 21}};
   OccupancyGrid from_box(spec), from_mesh(spec);
-  Rasteriser(*box.model).Fill(*box.data, 0, &from_box);
-  Rasteriser(*mesh.model).Fill(*mesh.data, 0, &from_mesh);
+  Rasteriser(*box.model, CellRule::kCentre).Fill(*box.data, 0, &from_box);
+  Rasteriser(*mesh.model, CellRule::kCentre).Fill(*mesh.data, 0, &from_mesh);
   EXPECT_EQ(from_box.CountFilled(), 6u * 4u * 2u);
   // MuJoCo turns a mesh into its principal axes; faces are half-open along those.
   EXPECT_EQ(from_mesh.CountFilled(), 6u * 4u * 2u);
@@ -169,7 +243,7 @@ TEST(OccupancyRasteriser, TreatsTheFacesOfABoxMeshLikeThoseOfABox) {
 
 TEST(OccupancyRasteriser, ReturnsOnlyWhatWasFreeBefore) {
   SmallModel m("<geom type='box' size='0.2 0.2 0.2'/><geom type='sphere' size='0.3'/>");
-  const Rasteriser rasteriser(*m.model);
+  const Rasteriser rasteriser(*m.model, CellRule::kCentre);
   OccupancyGrid grid(kGrid), sphere(kGrid);
   const std::size_t box = rasteriser.Fill(*m.data, 0, &grid).size();
   rasteriser.Fill(*m.data, 1, &sphere);
@@ -189,11 +263,11 @@ TEST(OccupancyRasteriser, LeavesOutRobotFloorAndPictures) {
       "<body><geom name='crate' type='box' size='0.1 0.1 0.1' pos='0 -0.4 0'/></body>"
       "<body mocap='true'><geom name='guest' type='sphere' size='0.1' pos='0 0 0.5'/></body>");
   OccupancyGrid wanted(kGrid);
-  const Rasteriser rasteriser(*m.model);
+  const Rasteriser rasteriser(*m.model, CellRule::kCentre);
   rasteriser.Fill(*m.data, m.Geom("crate"), &wanted);
   rasteriser.Fill(*m.data, m.Geom("guest"), &wanted);
   EXPECT_GT(wanted.CountFilled(), 0u);
-  EXPECT_EQ(RasteriseWorld(*m.model, *m.data, kGrid).cells, wanted.cells);
+  EXPECT_EQ(RasteriseWorld(*m.model, *m.data, kGrid, CellRule::kCentre).cells, wanted.cells);
 }
 
 }  // namespace

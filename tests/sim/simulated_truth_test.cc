@@ -189,6 +189,23 @@ TEST(SimulatedTruth, IgnoresTheMountForTheLinksThatStandOnIt) {
   EXPECT_EQ(stuck.front().nearest_robot_part, "turret");
 }
 
+TEST(SimulatedTruth, LetsTheLinksAtTheFootTouchTheFloorWithoutAMount) {
+  scenarios::Scenario scenario = TwoLinkScenario();
+  scenario.floor_m = 0.26;  // up into the turret (0.25 to 0.35 m), but not to the bar
+  const std::vector<TruthSample> standing = Watch(scenario, 0.1);
+  EXPECT_EQ(FirstContact(standing), nullptr);
+  EXPECT_EQ(standing.front().nearest_object, "floor");
+  EXPECT_NE(standing.front().nearest_robot_part, "turret");
+  EXPECT_GT(standing.front().clearance_m, 0);
+
+  scenario.static_boxes = {{"block", Pose::Translation({5, 0, 0}), {0.1, 0.1, 0.1}}};
+  scenario.mount = "block";  // now it is not the floor that it stands on
+  const std::vector<TruthSample> stuck = Watch(scenario, 0.1);
+  ASSERT_NE(FirstContact(stuck), nullptr);
+  EXPECT_EQ(stuck.front().nearest_robot_part, "turret");
+  EXPECT_EQ(stuck.front().nearest_object, "floor");
+}
+
 TEST(SimulatedTruth, MeasuresToTheFloor) {
   scenarios::Scenario scenario = TwoLinkScenario();
   scenario.q_start = Eigen::Vector2d(0, -0.3);

@@ -1,0 +1,67 @@
+#include "sidestep/cli/slice_axes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace sidestep::cli {
+namespace {
+
+constexpr render::Color kPaper{255, 255, 255}, kInk{20, 20, 30};
+constexpr int kTick = 5, kLetters = 14, kGap = 4;  // pixels
+constexpr int kLeft = 48, kTop = kLetters + 2 * kGap, kBottom = kTick + kLetters + 2 * kGap,
+              kRight = 16;
+constexpr double kPixelsATick = 60;
+
+std::string Label(double value_m, double step_m) {
+  const int digits = std::max(0, static_cast<int>(std::ceil(-std::log10(step_m) - 1e-9)));
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.*f", digits, value_m + 0.0);  // + 0.0: no "-0"
+  return text;
+}
+
+// Calls draw(pixel from the low end, label) for each tick of an axis.
+template <class Draw>
+void ForEachTick(double low_m, double high_m, int pixels, const Draw& draw) {
+  const double step_m = TickStep(high_m - low_m, std::max(1.0, pixels / kPixelsATick));
+  for (double n = std::ceil(low_m / step_m - 1e-9); n * step_m <= high_m + 1e-9 * step_m; ++n) {
+    const double value_m = n * step_m;
+    const double share = (value_m - low_m) / (high_m - low_m);
+    draw(static_cast<int>(std::lround(share * (pixels - 1))), Label(value_m, step_m));
+  }
+}
+
+}  // namespace
+
+double TickStep(double range, double most) {
+  const double power = std::pow(10.0, std::floor(std::log10(range / most)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (range / (factor * power) <= most * (1 + 1e-9)) return factor * power;
+  }
+  return 10 * power;
+}
+
+render::Image WithAxes(const render::Image& slice, const SliceExtent& extent,
+                       const std::string& title, const render::Font& font) {
+  const int width = slice.width(), height = slice.height();
+  render::Image image(kLeft + width + kRight, kTop + height + kBottom);
+  image.Fill({0, 0, image.width(), image.height()}, kPaper);
+  font.Draw(image, kLeft, kGap, kLetters, kInk, title);
+  image.Outline({kLeft - 1, kTop - 1, width + 2, height + 2}, kInk, 1);
+  image.Paste(slice, kLeft, kTop);
+  ForEachTick(extent.x_low_m, extent.x_high_m, width, [&](int pixel, const std::string& label) {
+    image.Fill({kLeft + pixel, kTop + height, 1, kTick}, kInk);
+    font.Draw(image, kLeft + pixel - font.Width(label, kLetters) / 2, kTop + height + kTick + kGap,
+              kLetters, kInk, label);
+  });
+  ForEachTick(extent.y_low_m, extent.y_high_m, height, [&](int pixel, const std::string& label) {
+    const int y = kTop + height - 1 - pixel;
+    image.Fill({kLeft - kTick, y, kTick, 1}, kInk);
+    font.Draw(image, kLeft - kTick - kGap - font.Width(label, kLetters), y - kLetters / 2, kLetters,
+              kInk, label);
+  });
+  font.Draw(image, kGap, kTop + height + kTick + kGap, kLetters, kInk, "m");
+  return image;
+}
+
+}  // namespace sidestep::cli

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "sidestep/render/font.h"
+#include "sidestep/render/image.h"
+
+namespace sidestep::cli {
+
+/// What a picture of a level slice shows of the world, edge to edge [m].
+struct SliceExtent {
+  double x_low_m = 0, x_high_m = 0, y_low_m = 0, y_high_m = 0;
+};
+
+/// The picture, x to the right and y upwards, in a frame with ticks in metres, and a title above.
+render::Image WithAxes(const render::Image& slice, const SliceExtent& extent,
+                       const std::string& title, const render::Font& font);
+
+/// The distance between ticks for a range: 1, 2 or 5 times a power of ten, and the least of those
+/// that leaves at most `most` steps. @param range > 0. @param most >= 1.
+double TickStep(double range, double most);
+
+}  // namespace sidestep::cli
