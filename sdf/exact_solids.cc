@@ -52,13 +52,7 @@ double ExactSolids::Distance(const Eigen::Vector3d& p_WQ) const {
   return least_m;
 }
 
-void ExactSolids::Lower(const Eigen::Vector3d& p_WQ, DistanceSample& sample) const {
-  for (const HalfSpace& half_space : half_spaces_) {
-    const double distance_m = SignedDistance(half_space, p_WQ);
-    if (!(distance_m < sample.distance_m)) continue;
-    sample.distance_m = distance_m;
-    sample.gradient_W = half_space.normal_W;
-  }
+void ExactSolids::LowerByShapes(const Eigen::Vector3d& p_WQ, DistanceSample& sample) const {
   for (const ExactShape& shape : shapes_) shape.Lower(p_WQ, sample);
 }
 

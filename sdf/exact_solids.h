@@ -40,11 +40,21 @@ class ExactSolids {
   /// The least distance; infinite without a solid.
   double Distance(const Eigen::Vector3d& p_WQ) const;
   /// Makes the sample that of a solid, where that is nearer.
-  void Lower(const Eigen::Vector3d& p_WQ, DistanceSample& sample) const;
+  void Lower(const Eigen::Vector3d& p_WQ, DistanceSample& sample) const {
+    for (const HalfSpace& half_space : half_spaces_) {
+      const double distance_m = SignedDistance(half_space, p_WQ);
+      if (!(distance_m < sample.distance_m)) continue;
+      sample.distance_m = distance_m;
+      sample.gradient_W = half_space.normal_W;
+    }
+    if (!shapes_.empty()) LowerByShapes(p_WQ, sample);
+  }
   /// The same for a block of points, to the last bit.
   void Lower(field_kernels::Block& block) const;
 
  private:
+  void LowerByShapes(const Eigen::Vector3d& p_WQ, DistanceSample& sample) const;
+
   std::vector<HalfSpace> half_spaces_;
   std::vector<ExactShape> shapes_;
 };

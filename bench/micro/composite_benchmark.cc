@@ -5,8 +5,8 @@
 // The world of the queries is the furnished room in 96^3 cells with M cubes of 0.2 m that share one
 // field, turned every way. The points are those of 256 arms all over the room, 64 in a cube of
 // 0.77 m each, so that they come through the whole grid; ..._one_arm/objects:M asks one arm's again
-// and again, which stay in the cache. The objects stand at one time; composite/place/objects:M is
-// the cost of going to another.
+// and again, which stay in the cache. ..._floor/objects:M has the room's floor as a half-space,
+// too. The objects stand at one time; composite/place/objects:M is the cost of going to another.
 
 #include <benchmark/benchmark.h>
 
@@ -35,7 +35,7 @@ double Uniform(std::mt19937_64& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }
 
-sdf::CompositeField CubesInARoom(int num_objects) {
+sdf::CompositeField CubesInARoom(int num_objects, const StaticSolids& exact = {}) {
   constexpr int kCells = 96;
   const double cell_m = kRoom_m / kCells;
   OccupancyGrid cube({Eigen::Vector3d::Constant(-2 * cell_m), cell_m, {5, 5, 5}});
@@ -51,7 +51,7 @@ sdf::CompositeField CubesInARoom(int num_objects) {
     const Pose X_WO = Pose::FromRollPitchYaw(anywhere(-3, 3), anywhere(0.2, kRoom_m - 0.2));
     objects.push_back({field_O, [X_WO](EpisodeTime) { return X_WO; }});
   }
-  return sdf::CompositeField(RoomField(kCells), std::move(objects), kClamp_m);
+  return sdf::CompositeField(RoomField(kCells), std::move(objects), kClamp_m, exact);
 }
 
 // The arms' points, one arm after the other.
@@ -77,8 +77,10 @@ void CountQueries(Eigen::Index num_points, benchmark::State& state) {
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-void Lazy(benchmark::State& state, int num_arms) {
-  const sdf::CompositeField composite = CubesInARoom(static_cast<int>(state.range(0)));
+StaticSolids Floor() { return {{}, {{Eigen::Vector3d::UnitZ(), 0.1}}}; }
+
+void Lazy(benchmark::State& state, int num_arms, const StaticSolids& exact) {
+  const sdf::CompositeField composite = CubesInARoom(static_cast<int>(state.range(0)), exact);
   const sdf::PlacedComposite field = composite.At(EpisodeTime(0));
   const Eigen::Matrix3Xd p_WQ = ArmPoints(num_arms).transpose();
   for (auto _ : state) {
@@ -89,8 +91,8 @@ void Lazy(benchmark::State& state, int num_arms) {
   CountQueries(p_WQ.cols(), state);
 }
 
-void LazyBatched(benchmark::State& state, int num_arms) {
-  const sdf::CompositeField composite = CubesInARoom(static_cast<int>(state.range(0)));
+void LazyBatched(benchmark::State& state, int num_arms, const StaticSolids& exact) {
+  const sdf::CompositeField composite = CubesInARoom(static_cast<int>(state.range(0)), exact);
   const sdf::PlacedComposite field = composite.At(EpisodeTime(0));
   const sdf::PointColumns p_WQ = ArmPoints(num_arms);
   sdf::SampleColumns samples;
@@ -110,16 +112,22 @@ void Place(benchmark::State& state) {
 void Objects(benchmark::internal::Benchmark* benchmark) {
   benchmark->ArgName("objects")->Arg(0)->Arg(1)->Arg(8)->Arg(32)->Arg(128);
 }
-BENCHMARK_CAPTURE(Lazy, far, 256)
+BENCHMARK_CAPTURE(Lazy, far, 256, StaticSolids())
     ->Name("query/lazy")
     ->Apply(Objects)
     ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(LazyBatched, far, 256)
+BENCHMARK_CAPTURE(LazyBatched, far, 256, StaticSolids())
     ->Name("query/lazy_batched")
     ->Apply(Objects)
     ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(Lazy, near, 1)->Name("query/lazy_one_arm")->Apply(Objects);
-BENCHMARK_CAPTURE(LazyBatched, near, 1)->Name("query/lazy_batched_one_arm")->Apply(Objects);
+BENCHMARK_CAPTURE(Lazy, near, 1, StaticSolids())->Name("query/lazy_one_arm")->Apply(Objects);
+BENCHMARK_CAPTURE(LazyBatched, near, 1, StaticSolids())
+    ->Name("query/lazy_batched_one_arm")
+    ->Apply(Objects);
+BENCHMARK_CAPTURE(Lazy, floor, 1, Floor())->Name("query/lazy_one_arm_floor")->Apply(Objects);
+BENCHMARK_CAPTURE(LazyBatched, floor, 1, Floor())
+    ->Name("query/lazy_batched_one_arm_floor")
+    ->Apply(Objects);
 BENCHMARK(Place)->Name("composite/place")->Apply(Objects);
 
 // The pillar on its way through the room, a cell a step.

@@ -5,8 +5,11 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "sidestep/bench/metrics/registry.h"
 #include "tests/bench/kinematic_world.h"
@@ -133,6 +136,33 @@ TEST_F(Episode, OfARobotThatSeesNothingGetsNoPlanAndSaysWhy) {
   EXPECT_TRUE(result.recording.cycles.empty());
   EXPECT_TRUE(result.times.at("cycle").empty());
   EXPECT_TRUE(world_.submissions.empty());
+}
+
+TEST_F(Episode, GivesFieldsThatOutliveTheirWorldAndSayTheSameAfterwards) {
+  const Eigen::Matrix3Xd p_WQ = Eigen::Matrix3Xd::Random(3, 200);
+  for (const sdf::Knowledge knowledge : sdf::kAllKnowledge) {
+    std::vector<std::shared_ptr<const sdf::DistanceField>> fields;
+    std::vector<Eigen::VectorXd> said_m;
+    {
+      scenarios::Scenario scenario = scenario_;
+      scenario.knowledge = ToString(knowledge);
+      KinematicWorld world;
+      sdf::DistanceSamples samples;
+      RunEpisode(scenario, arm_, world.Factory(),
+                 [&](EpisodeTime, std::shared_ptr<const sdf::DistanceField> field,
+                     const robot::WorldTruth*) {
+                   field->SampleMany(p_WQ, EpisodeTime(0.7), samples);
+                   said_m.push_back(samples.distance_m);
+                   fields.push_back(std::move(field));
+                 });
+    }
+    ASSERT_FALSE(fields.empty());
+    sdf::DistanceSamples samples;
+    for (std::size_t n = 0; n < fields.size(); ++n) {
+      fields[n]->SampleMany(p_WQ, EpisodeTime(0.7), samples);
+      EXPECT_EQ(samples.distance_m, said_m[n]) << ToString(knowledge);
+    }
+  }
 }
 
 TEST_F(Episode, ToAGoalOnWhichSomethingStandsSaysThatEveryPlanCollides) {

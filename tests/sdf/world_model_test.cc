@@ -229,6 +229,26 @@ TEST(WorldModel, LeavesTheBoxWhereItIsWithAPredictorThatSaysSo) {
   ExpectBoxAt(TrueY(0.5), *world->MakeField(), EpisodeTime(1.5));
 }
 
+TEST(WorldModel, AsksEachTrueMotionOnceAQueryHoweverManyThereAre) {
+  int num_asked = 0;
+  WorldModelOptions options = Options(Knowledge::kFullKnowledge);
+  options.true_obstacles.emplace();
+  constexpr int kObstacles = 12;
+  for (int n = 0; n < kObstacles; ++n) {
+    options.true_obstacles->push_back({Sphere{0.1}, [&num_asked, n](EpisodeTime) {
+                                         ++num_asked;
+                                         return Pose::Translation({0.1 * n, 0, 0});
+                                       }});
+  }
+  const auto world = MakeWorldModel(options);
+  world->Observe(ScanAt(EpisodeTime(0)));
+  const auto field = world->MakeField();
+  num_asked = 0;
+  DistanceSamples samples;
+  field->SampleMany(Eigen::Matrix3Xd::Random(3, 100), EpisodeTime(0.3), samples);
+  EXPECT_EQ(num_asked, kObstacles);
+}
+
 TEST(WorldModel, TakesNothingOfATrueObstacleForStaticUnderFullKnowledge) {
   const auto field = Watched(Knowledge::kFullKnowledge, /*until_s=*/0.2)->MakeField();
   // Once the box has gone on, the place where it was scanned is free, far from the shelf.
