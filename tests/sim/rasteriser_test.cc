@@ -112,6 +112,16 @@ TEST_P(EveryGeomType, MarksExactlyTheCellsWhoseCentreIsInside) {
   }
 }
 
+// Of the 26 around a cell, or the cell itself.
+bool HasFilledNeighbour(const OccupancyGrid& grid, std::size_t cell) {
+  const auto [i, j, k] = grid.spec.CellOf(grid.spec.CenterOf(cell));
+  for (int n = 0; n < 27; ++n) {
+    const int a = i + n % 3 - 1, b = j + n / 3 % 3 - 1, c = k + n / 9 - 1;
+    if (grid.spec.Contains(a, b, c) && grid.At(a, b, c)) return true;
+  }
+  return false;
+}
+
 // What is inside, anywhere in the cell, by a lattice of points: where one is, the cell is filled;
 // a filled cell has one within a step of the lattice around it.
 TEST_P(EveryGeomType, MarksTheCellsThatItReachesIntoIfToldSo) {
@@ -126,17 +136,19 @@ TEST_P(EveryGeomType, MarksTheCellsThatItReachesIntoIfToldSo) {
   const GridSpec spec{{-0.78, -0.8, -0.82}, 0.1, {17, 16, 16}};
   const Rasteriser rasteriser(*m.model, CellRule::kTouched);
   const Rasteriser centres(*m.model, CellRule::kCentre);
-  constexpr int kSteps = 20;
+  constexpr int kSteps = 8;
   const double step_m = spec.cell_m / kSteps;
-  for (int trial = 0; trial < 3; ++trial) {
+  for (int trial = 0; trial < 2; ++trial) {
     const Pose X_WO = RandomPose(/*reach_m=*/0.4, &generator);
     m.Place(0, X_WO);
     OccupancyGrid grid(spec), by_centres(spec);
     rasteriser.Fill(*m.data, 0, &grid);
     centres.Fill(*m.data, 0, &by_centres);
-    int num_missed = 0, num_idle = 0;
+    int num_missed = 0, num_idle = 0, num_doubtful = 0;
     for (std::size_t cell = 0; cell < grid.cells.size(); ++cell) {
       EXPECT_LE(by_centres.cells[cell], grid.cells[cell]);
+      if (by_centres.cells[cell] != 0 || !HasFilledNeighbour(grid, cell)) continue;
+      ++num_doubtful;
       bool inside = false, near = false;
       for (int n = 0; n < (kSteps + 3) * (kSteps + 3) * (kSteps + 3) && !inside; ++n) {
         const int at[] = {n % (kSteps + 3) - 1, n / (kSteps + 3) % (kSteps + 3) - 1,
@@ -152,7 +164,7 @@ TEST_P(EveryGeomType, MarksTheCellsThatItReachesIntoIfToldSo) {
       num_idle += !near && grid.cells[cell] != 0;
     }
     EXPECT_EQ(num_missed, 0) << "of " << grid.CountFilled() << " cells, trial " << trial;
-    EXPECT_LE(num_idle, static_cast<int>(grid.CountFilled()) / 100);  // a tip between the points
+    EXPECT_LE(num_idle, num_doubtful / 50);  // a tip between the points
     EXPECT_GT(grid.CountFilled(), by_centres.CountFilled());
   }
 }

@@ -191,6 +191,7 @@ TEST(SimulatedTruth, IgnoresTheMountForTheLinksThatStandOnIt) {
 
 TEST(SimulatedTruth, LetsTheLinksAtTheFootTouchTheFloorWithoutAMount) {
   scenarios::Scenario scenario = TwoLinkScenario();
+  scenario.q_start = Eigen::Vector2d(0, 0.3);  // the ball is up
   scenario.floor_m = 0.26;  // up into the turret (0.25 to 0.35 m), but not to the bar
   const std::vector<TruthSample> standing = Watch(scenario, 0.1);
   EXPECT_EQ(FirstContact(standing), nullptr);
