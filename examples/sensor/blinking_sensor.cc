@@ -27,8 +27,8 @@ class BlinkingSensor final : public robot::Sensor {
 
 std::unique_ptr<robot::Sensor> MakeBlinkingSensor(const scenarios::Scenario& scenario,
                                                   const World& world) {
-  return std::make_unique<BlinkingSensor>(
-      std::make_unique<OccupancySensor>(world, scenario.grid, scenario.sensor.rate_hz));
+  return std::make_unique<BlinkingSensor>(std::make_unique<OccupancySensor>(
+      world, scenario.grid, scenario.sensor.rate_hz, scenario.sensor.cells));
 }
 
 }  // namespace sidestep::sim
