@@ -1,8 +1,9 @@
 #include "sidestep/cli/slice_axes.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace sidestep::cli {
 namespace {
@@ -15,9 +16,7 @@ constexpr double kPixelsATick = 60;
 
 std::string Label(double value_m, double step_m) {
   const int digits = std::max(0, static_cast<int>(std::ceil(-std::log10(step_m) - 1e-9)));
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.*f", digits, value_m + 0.0);  // + 0.0: no "-0"
-  return text;
+  return fmt::format("{:.{}f}", value_m + 0.0, digits);  // + 0.0: no "-0"
 }
 
 // Calls draw(pixel from the low end, label) for each tick of an axis.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "sidestep/bench/metrics/registry.h"
+#include "sidestep/record/recording_file.h"
 #include "tests/bench/kinematic_world.h"
 #include "tests/support/planar_arm.h"
 #include "tests/support/temporary_folder.h"
