@@ -1,17 +1,16 @@
 #pragma once
 
-#include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <string_view>
 
 namespace sidestep {
 
 /// A stream of random numbers that belongs to one purpose of one episode: the seed and the
 /// purpose's name decide it, so that a purpose that draws more or less does not disturb another.
-/// The numbers of Bits and Uniform are the same everywhere; Normal takes log and cos from the C
-/// library, whose last bit may differ from one to another. Source: SplitMix64, G. L. Steele, D.
-/// Lea, C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014; the purpose is
+/// Every number is made by additions, multiplications, divisions and square roots of doubles, which
+/// IEEE 754 defines to the last bit, so it is the same with every compiler and library; what the
+/// distributions of `std::` give is each library's own. Source: SplitMix64, G. L. Steele, D. Lea,
+/// C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014; the purpose is
 /// hashed by FNV-1a.
 class RandomStream {
  public:
@@ -33,11 +32,12 @@ class RandomStream {
   /// In [0, 1), a multiple of 2^-53.
   double Uniform() { return static_cast<double>(Bits() >> 11) * 0x1p-53; }
 
-  /// Of mean 0 and standard deviation 1, by Box and Muller (of the pair, the first).
-  double Normal() {
-    const double radius = std::sqrt(-2 * std::log(1 - Uniform()));
-    return radius * std::cos(2 * std::numbers::pi * Uniform());
-  }
+  /// In [low, high], for low <= high; `high` itself only by rounding.
+  double Uniform(double low, double high) { return low + (high - low) * Uniform(); }
+
+  /// Of mean 0 and standard deviation 1, by Box and Muller (of the pair, the first), with a
+  /// logarithm and a cosine of its own, wrong by at most an ulp or two.
+  double Normal();
 
  private:
   std::uint64_t state_ = 0;

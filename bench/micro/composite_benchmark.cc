@@ -12,10 +12,10 @@
 
 #include <cmath>
 #include <memory>
-#include <random>
 #include <vector>
 
 #include "sidestep/bench/micro/furnished_room.h"
+#include "sidestep/core/random.h"
 #include "sidestep/sdf/composite_field.h"
 #include "sidestep/sdf/dense_composite.h"
 #include "sidestep/sdf/map/fast_distance_transform.h"
@@ -31,20 +31,16 @@ std::shared_ptr<const sdf::SdfGrid> RoomField(int n) {
       sdf::FastDistanceTransform().Compute(FurnishedRoom(n, {})));
 }
 
-double Uniform(std::mt19937_64& random, double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(random);
-}
-
-sdf::CompositeField CubesInARoom(int num_objects, const StaticSolids& exact = {}) {
+sdf::CompositeField CubesInARoom(int num_objects, const sdf::StaticSolids& exact = {}) {
   constexpr int kCells = 96;
   const double cell_m = kRoom_m / kCells;
   OccupancyGrid cube({Eigen::Vector3d::Constant(-2 * cell_m), cell_m, {5, 5, 5}});
   std::fill(cube.cells.begin(), cube.cells.end(), 1);
   const auto field_O = std::make_shared<const sdf::SdfGrid>(sdf::MakeObjectField(cube, kClamp_m));
-  std::mt19937_64 random(7);
+  RandomStream random(7, "poses");
   const auto anywhere = [&](double low, double high) {
-    return Eigen::Vector3d(Uniform(random, low, high), Uniform(random, low, high),
-                           Uniform(random, low, high));
+    return Eigen::Vector3d(random.Uniform(low, high), random.Uniform(low, high),
+                           random.Uniform(low, high));
   };
   std::vector<sdf::MovingField> objects;
   for (int n = 0; n < num_objects; ++n) {
@@ -57,13 +53,13 @@ sdf::CompositeField CubesInARoom(int num_objects, const StaticSolids& exact = {}
 // The arms' points, one arm after the other.
 sdf::PointColumns ArmPoints(int num_arms) {
   constexpr int kPoints = 64;
-  std::mt19937_64 random(8);
+  RandomStream random(8, "points");
   sdf::PointColumns p_WQ(num_arms * kPoints, 3);
   for (int arm = 0; arm < num_arms; ++arm) {
     for (int axis = 0; axis < 3; ++axis) {
-      const double low = Uniform(random, 0.1, kRoom_m - 0.87);
+      const double low = random.Uniform(0.1, kRoom_m - 0.87);
       for (int n = 0; n < kPoints; ++n) {
-        p_WQ(arm * kPoints + n, axis) = Uniform(random, low, low + 0.77);
+        p_WQ(arm * kPoints + n, axis) = random.Uniform(low, low + 0.77);
       }
     }
   }
@@ -79,7 +75,7 @@ void CountQueries(Eigen::Index num_points, benchmark::State& state) {
 
 StaticSolids Floor() { return {{}, {{Eigen::Vector3d::UnitZ(), 0.1}}}; }
 
-void Lazy(benchmark::State& state, int num_arms, const StaticSolids& exact) {
+void Lazy(benchmark::State& state, int num_arms, const sdf::StaticSolids& exact) {
   const sdf::CompositeField composite = CubesInARoom(static_cast<int>(state.range(0)), exact);
   const sdf::PlacedComposite field = composite.At(EpisodeTime(0));
   const Eigen::Matrix3Xd p_WQ = ArmPoints(num_arms).transpose();
@@ -91,7 +87,7 @@ void Lazy(benchmark::State& state, int num_arms, const StaticSolids& exact) {
   CountQueries(p_WQ.cols(), state);
 }
 
-void LazyBatched(benchmark::State& state, int num_arms, const StaticSolids& exact) {
+void LazyBatched(benchmark::State& state, int num_arms, const sdf::StaticSolids& exact) {
   const sdf::CompositeField composite = CubesInARoom(static_cast<int>(state.range(0)), exact);
   const sdf::PlacedComposite field = composite.At(EpisodeTime(0));
   const sdf::PointColumns p_WQ = ArmPoints(num_arms);

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <random>
 #include <stdexcept>
 #include <utility>
 
 #include "sidestep/core/cpu_time.h"
+#include "sidestep/core/random.h"
 #include "sidestep/sdf/map/object_field.h"
 #include "sidestep/sdf/prediction/registry.h"
 #include "sidestep/sdf/tracking/segmentation.h"
@@ -53,12 +53,11 @@ std::array<int, 3> Corner(const GridSpec& grid, const GridSpec& shape_O,
 }
 
 Eigen::Matrix3Xd RandomPoints(const GridSpec& grid) {
-  std::mt19937_64 generator(1);
-  std::uniform_real_distribution<double> share(0, 1);
+  RandomStream random(1, "field timer points");
   const Eigen::Vector3d size_m =
       grid.Center(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1) - grid.first_center_m;
   Eigen::Matrix3Xd points(3, kQueries);
-  for (Eigen::Index i = 0; i < points.size(); ++i) points(i) = share(generator);
+  for (Eigen::Index i = 0; i < points.size(); ++i) points(i) = random.Uniform();
   return (points.array().colwise() * size_m.array()).colwise() + grid.first_center_m.array();
 }
 
