@@ -4,7 +4,6 @@
 #include <cmath>
 #include <exception>
 #include <functional>
-#include <random>
 #include <stdexcept>
 
 #include "sidestep/bench/free_path_search.h"
@@ -79,21 +78,6 @@ StudyRow RunStudySearch(const scenarios::Scenario& scenario, const robot::RobotM
     row.outcome = ToString(path.found ? Outcome::kGoal : Outcome::kCollision);
     row.metrics["min_clearance_m"] = path.clearance_m;
   });
-}
-
-void VaryObstacles(scenarios::Scenario& scenario, std::uint64_t seed) {
-  std::mt19937_64 generator(seed);
-  const double speed_factor = std::uniform_real_distribution<double>(0.75, 1.3)(generator);
-  const double delay_s = std::uniform_real_distribution<double>(0, 0.5)(generator);
-  scenarios::ScaleSpeeds(scenario, speed_factor);
-  for (scenarios::MovingObstacle& obstacle : scenario.moving_obstacles) {
-    std::visit(
-        [&](auto& motion) {
-          motion.begin_at_s += delay_s;
-          motion.stop_at_s += delay_s;
-        },
-        obstacle.motion);
-  }
 }
 
 std::string StudyCsv(const std::vector<StudyRow>& rows) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -29,11 +28,6 @@ StudyRow RunStudyEpisode(const scenarios::Scenario& scenario, const robot::Robot
 /// goal, or collision if none was found. Its one metric is min_clearance_m.
 StudyRow RunStudySearch(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
                         int max_guesses, const std::map<std::string, std::string>& factors);
-
-/// Makes all moving obstacles faster or slower (ScaleSpeeds) by one factor from 0.75 to 1.3 and
-/// lets them all begin later by up to 0.5 s: what a seed changes of an episode besides random
-/// walks.
-void VaryObstacles(scenarios::Scenario& scenario, std::uint64_t seed);
 
 /// All rows, with a column for each factor and each metric.
 std::string StudyCsv(const std::vector<StudyRow>& rows);

@@ -98,9 +98,7 @@ Problem MakeCase(const StudyOptions& options, scenarios::Settings settings, cons
     }
   }
   overrides.settings = settings;
-  Problem problem = LoadProblem(options.scenario, overrides, paths);
-  if (options.episodes > 0) bench::VaryObstacles(problem.scenario, problem.scenario.seed);
-  return problem;
+  return LoadProblem(options.scenario, overrides, paths);
 }
 
 // What rows must have in common to stand in one table: all that is not a factor of theirs.

@@ -6,8 +6,8 @@
 
 #include "sidestep/bench/resolve.h"
 #include "sidestep/core/input_error.h"
-#include "sidestep/core/yaml_reader.h"
 #include "sidestep/planner/registry.h"
+#include "sidestep/scenarios/variations.h"
 #include "sidestep/sdf/prediction/registry.h"
 #include "sidestep/sdf/world_model.h"
 #include "sidestep/sim/foreign_model.h"
@@ -22,26 +22,15 @@ void Override(scenarios::Scenario& scenario, const Overrides& overrides) {
   if (overrides.knowledge) scenario.knowledge = *overrides.knowledge;
   if (overrides.predictor) scenario.predictor = *overrides.predictor;
   if (overrides.latency_ms) scenario.latency_s = *overrides.latency_ms / 1e3;
-  if (overrides.epsilon_m) scenario.epsilon_m = *overrides.epsilon_m;
-  if (scenario.epsilon_m > scenarios::kMaxMarginCells * scenario.grid.cell_m) {
-    throw InputError("--epsilon", "must be at most " + std::to_string(scenarios::kMaxMarginCells) +
-                                      " cells of the workspace");
-  }
-  if (overrides.speed_m_s) {
-    if (scenario.moving_obstacles.empty()) {
-      throw InputError("--speed", "this scenario has no moving obstacle");
-    }
-    if (*overrides.speed_m_s > YamlReader::kLargestNumber) {
-      throw InputError("--speed", "must be at most 1e12");
-    }
-    for (scenarios::MovingObstacle& obstacle : scenario.moving_obstacles) {
-      std::visit([&](auto& motion) { motion.speed_m_s = *overrides.speed_m_s; }, obstacle.motion);
-      const auto* const accelerated = std::get_if<scenarios::AcceleratedMotion>(&obstacle.motion);
-      if (accelerated && accelerated->max_speed_m_s < accelerated->speed_m_s) {
-        throw InputError("--speed", "is above the max_speed_m_s of '" + obstacle.name + "'");
-      }
+  if (overrides.epsilon_m) {
+    scenario.epsilon_m = *overrides.epsilon_m;
+    if (scenario.epsilon_m > scenarios::kMaxMarginCells * scenario.grid.cell_m) {
+      throw InputError("--epsilon", "must be at most " +
+                                        std::to_string(scenarios::kMaxMarginCells) +
+                                        " cells of the workspace");
     }
   }
+  if (overrides.speed_m_s) scenarios::SetSpeed(scenario, *overrides.speed_m_s);
   if (scenario.latency_s > scenario.horizon_s) {
     throw InputError("--latency-ms", "must not exceed the horizon");
   }

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
-#include <random>
 
+#include "sidestep/core/random.h"
 #include "sidestep/scenarios/scenario.h"
 
 namespace sidestep::scenarios {
@@ -56,8 +56,7 @@ struct Walker {
 };
 
 Walker WalkFor(const RandomWalkMotion& motion, double elapsed_s) {
-  std::mt19937_64 generator(motion.seed);
-  std::normal_distribution<double> turn(0, motion.turn_rad);
+  RandomStream random(motion.seed, "random walk");
   Eigen::Vector3d position_m = motion.start_m;
   double heading_rad = motion.heading_rad;
   while (true) {
@@ -66,7 +65,7 @@ Walker WalkFor(const RandomWalkMotion& motion, double elapsed_s) {
         leg_s * motion.speed_m_s * Eigen::Vector3d(std::cos(heading_rad), std::sin(heading_rad), 0);
     elapsed_s -= leg_s;
     if (!(elapsed_s > 0)) return {position_m, heading_rad};
-    if (motion.turn_rad > 0) heading_rad += turn(generator);
+    heading_rad += motion.turn_rad * random.Normal();
   }
 }
 

@@ -153,6 +153,9 @@ struct Scenario {
   std::uint64_t seed = 1;
 
   std::map<std::string, std::string> choices;  ///< what was chosen, by the choice's name
+  /// What the seed decided of the file's `variations`, by its key. The motions above have it
+  /// already.
+  std::map<std::string, double> drawn;
 
   /// Lines of what only other modules can judge (names of robots, configurations, ...), by its path
   /// in the file, so that they can complain as the reader does; 0 of a value that a setting gave.

@@ -12,6 +12,7 @@
 #include "sidestep/scenarios/scenario.h"
 #include "sidestep/scenarios/track_file.h"
 #include "sidestep/scenarios/yaml_text.h"
+#include "sidestep/scenarios/variations.h"
 
 namespace sidestep::scenarios {
 namespace {
@@ -476,8 +477,9 @@ Scenario Read(YamlReader top, const std::string& file, const std::optional<std::
     ReadReplanning(top, scenario);
   }
   ReadPerception(top, scenario);
-  top.CheckNoUnknownKeys();
   SeedMotions(scenario);
+  DrawVariations(top, scenario);
+  top.CheckNoUnknownKeys();
   for (auto& entry : scenario.lines) {
     const std::string& key = entry.first;
     const bool is_set = std::any_of(settings.begin(), settings.end(), [&](const auto& setting) {

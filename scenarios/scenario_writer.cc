@@ -110,7 +110,7 @@ std::string RobotText(const Scenario& scenario) {
   };
   return "robot:\n  model: " + Quoted(scenario.robot) + "\n  base: {" +
          PoseKeys("position_m", scenario.X_WB) + "}\n" +
-         (scenario.mount.empty() ? "" : "  mount: " + scenario.mount + "\n") +
+         (scenario.mount.empty() ? "" : "  mount: " + Quoted(scenario.mount) + "\n") +
          "task:\n  start: " + configuration(scenario.start_name, scenario.q_start) +
          "\n  goal: " + configuration(scenario.goal_name, scenario.q_goal) +
          "\n  dwell_s: " + Number(scenario.dwell_s) +
@@ -158,12 +158,12 @@ std::string ToYaml(const Scenario& scenario) {
        (scenario.static_world == StaticWorld::kExact ? "exact" : "occupancy"));
   if (!scenario.static_boxes.empty()) line("static_boxes:");
   for (const StaticBox& box : scenario.static_boxes) {
-    line("  - {name: " + box.name + ", " + PoseKeys("center_m", box.X_WO) +
+    line("  - {name: " + Quoted(box.name) + ", " + PoseKeys("center_m", box.X_WO) +
          ", size_m: " + List(box.size_m) + "}");
   }
   if (!scenario.moving_obstacles.empty()) line("moving_obstacles:");
   for (const MovingObstacle& obstacle : scenario.moving_obstacles) {
-    line("  - name: " + obstacle.name);
+    line("  - name: " + Quoted(obstacle.name));
     line("    shape: " + ShapeText(obstacle.shape));
     if (!obstacle.rpy_rad.isZero(0)) line("    rpy_rad: " + List(obstacle.rpy_rad));
     if (!obstacle.appearance.empty()) line("    appearance: " + Quoted(obstacle.appearance));

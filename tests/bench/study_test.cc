@@ -72,40 +72,6 @@ TEST(StudyEpisode, ThatThrowsIsARowThatSaysWhy) {
   EXPECT_EQ(row.factors.at("seed"), "1");
 }
 
-TEST(VaryObstacles, IsAFunctionOfTheSeedAndTheSameForAllObstacles) {
-  const scenarios::Scenario plain = Load("walkway_behaviours", {{"behaviour", "crossing"}});
-  double last_speed = 0;
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    scenarios::Scenario varied = plain, again = plain;
-    VaryObstacles(varied, seed);
-    VaryObstacles(again, seed);
-    EXPECT_EQ(scenarios::ToYaml(varied), scenarios::ToYaml(again));
-    const auto& hsr = std::get<scenarios::LinearMotion>(varied.moving_obstacles[0].motion);
-    const auto& trolley = std::get<scenarios::LinearMotion>(varied.moving_obstacles[1].motion);
-    EXPECT_NE(hsr.speed_m_s, last_speed);
-    EXPECT_GE(hsr.speed_m_s, 0.75 * 1.4);
-    EXPECT_LE(hsr.speed_m_s, 1.3 * 1.4);
-    EXPECT_NEAR(hsr.speed_m_s / 1.4, trolley.speed_m_s / 1.2, 1e-12);
-    EXPECT_GE(hsr.begin_at_s, 0);
-    EXPECT_LE(hsr.begin_at_s, 0.5);
-    EXPECT_EQ(hsr.begin_at_s, trolley.begin_at_s);
-    last_speed = hsr.speed_m_s;
-  }
-}
-
-TEST(VaryObstacles, LeavesAScenarioThatItsTraceCanBeReadWith) {
-  const scenarios::Scenario plain =
-      Load("walkway_behaviours", {{"behaviour", "speed_up_4"},
-                                  {"moving_obstacles[0].motion.accelerated.max_speed_m_s", "0.7"}});
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    scenarios::Scenario varied = plain;
-    VaryObstacles(varied, seed);
-    EXPECT_EQ(scenarios::ToYaml(scenarios::ParseScenario(scenarios::ToYaml(varied), "trace")),
-              scenarios::ToYaml(varied))
-        << seed;
-  }
-}
-
 TEST(FreePathSearch, FindsTheMotionThatFullKnowledgeFinds) {
   scenarios::Scenario scenario = Load("hsr_walkway");
   const robot::RobotModel robot = RobotOf(scenario);
