@@ -1,0 +1,19 @@
+#include "sidestep/core/fingerprint.h"
+
+#include <cstdio>
+
+namespace sidestep {
+
+void Fingerprint::Add(std::string_view part) {
+  const std::uint64_t length = part.size();
+  for (int shift = 0; shift < 64; shift += 8) AddByte(static_cast<unsigned char>(length >> shift));
+  for (const char c : part) AddByte(static_cast<unsigned char>(c));
+}
+
+std::string Fingerprint::Text() const {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash_));
+  return text;
+}
+
+}  // namespace sidestep
