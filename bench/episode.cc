@@ -17,6 +17,7 @@
 #include "sidestep/core/goal.h"
 #include "sidestep/planner/registry.h"
 #include "sidestep/planner/replanner.h"
+#include "sidestep/scenarios/yaml_text.h"
 #include "sidestep/sdf/world_model.h"
 
 namespace sidestep::bench {
@@ -66,6 +67,9 @@ record::Recording BeginRecording(const scenarios::Scenario& scenario,
                       {"predictor", scenario.predictor}, {"seed", std::to_string(scenario.seed)}};
   for (const auto& [choice, chosen] : scenario.choices) {
     recording.header["choice." + choice] = chosen;
+  }
+  for (const auto& [key, value] : scenario.drawn) {
+    recording.header["drawn." + key] = scenarios::Number(value);
   }
   recording.scenario_yaml = scenarios::ToYaml(scenario);
   recording.model_xml = world.model_xml;

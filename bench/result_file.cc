@@ -12,6 +12,7 @@
 #include "sidestep/bench/statistics.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/text_file.h"
+#include "sidestep/core/yaml_json.h"
 
 namespace sidestep::bench {
 namespace {
@@ -37,9 +38,26 @@ Json StageTable(const StageTimes& times) {
   return table;
 }
 
+// The leaves of a tree by their paths; lists of plain values are leaves.
+void Flatten(const Json& value, const std::string& path,
+             std::map<std::string, std::string>& leaves) {
+  const bool is_list_of_maps = value.is_array() && !value.empty() && value.front().is_object();
+  if (!value.is_object() && !is_list_of_maps) {
+    leaves[path] = value.is_string() ? value.get<std::string>() : value.dump();
+    return;
+  }
+  for (std::size_t i = 0; is_list_of_maps && i < value.size(); ++i) {
+    Flatten(value[i], path + "[" + std::to_string(i) + "]", leaves);
+  }
+  for (auto item = value.begin(); value.is_object() && item != value.end(); ++item) {
+    Flatten(item.value(), path.empty() ? item.key() : path + "." + item.key(), leaves);
+  }
+}
+
 }  // namespace
 
 std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& scenario,
+                       const RunIdentity& identity,
                        const std::map<std::string, std::string>& versions) {
   Json json;
   json["format"] = "sidestep-result-1";
@@ -49,22 +67,16 @@ std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& s
   json["knowledge"] = scenario.knowledge;
   json["predictor"] = scenario.predictor;
   json["seed"] = scenario.seed;
-  json["parameters"] = {
-      {"epsilon_m", scenario.epsilon_m},          {"sigma_obs", scenario.sigma_obs},
-      {"n_int", scenario.num_interpolated},       {"horizon_s", scenario.horizon_s},
-      {"latency_s", scenario.latency_s},          {"replan_rate_hz", scenario.replan_rate_hz},
-      {"sensor_rate_hz", scenario.sensor.rate_hz}};
-  Json speeds = Json::object();
-  for (const scenarios::MovingObstacle& obstacle : scenario.moving_obstacles) {
-    speeds[obstacle.name] =
-        std::visit([](const auto& motion) { return motion.speed_m_s; }, obstacle.motion);
-  }
-  json["obstacle_speeds_m_s"] = speeds;
+  json["choices"] = scenario.choices;
+  json["drawn"] = scenario.drawn;
   json["outcome"] = ToString(result.outcome);
   json["reason"] = result.reason.empty() ? Json(nullptr) : Json(result.reason);
   for (const Metric& metric : Metrics()) {
     json[metric.name] = ValueOf(metric, result.recording.metrics.at(metric.name));
   }
+  json["parameters"] = Json::parse(YamlToJson(scenarios::ToYaml(scenario)));
+  json["identity"] = {
+      {"run", RunId(identity)}, {"scenario", identity.scenario}, {"models", identity.models}};
   json["versions"] = versions;
   json["wall_clock"] = {{"episode_s", result.wall_s}, {"cycle_cpu", StageTable(result.times)}};
   return JsonText(json);
@@ -84,6 +96,7 @@ ResultSummary ReadResult(const std::string& path) {
     const std::optional<Outcome> outcome = OutcomeFromString(word);
     if (!outcome) throw InputError(path, "is not a whole result: no outcome is '" + word + "'");
     summary.outcome = *outcome;
+    Flatten(json.at("parameters"), "", summary.parameters);
     for (const Metric& metric : Metrics()) {
       const Json& value = json.at(metric.name);
       summary.metrics[metric.name] =

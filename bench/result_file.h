@@ -4,19 +4,24 @@
 #include <string>
 
 #include "sidestep/bench/episode.h"
+#include "sidestep/bench/run_identity.h"
 
 namespace sidestep::bench {
 
-/// The text of result.json: outcome, metrics, scenario, versions; and, under "wall_clock" alone,
-/// everything that may differ between equal runs. Numbers that do not apply are null.
+/// The text of result.json: outcome, metrics, identity, versions; the whole scenario as run, under
+/// "parameters", with the keys of a scenario file; and, under "wall_clock" alone, everything that
+/// may differ between equal runs. Numbers that do not apply are null.
 /// @param versions of the code and libraries, of the machine's C library variant, ...
 std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& scenario,
+                       const RunIdentity& identity,
                        const std::map<std::string, std::string>& versions);
 
 /// What a comparison table needs of a result.json.
 struct ResultSummary {
   std::string scenario, knowledge;
   Outcome outcome = Outcome::kAborted;
+  /// Of the scenario as run, by their paths in a scenario file, e.g. "planner.epsilon_m": "0.2".
+  std::map<std::string, std::string> parameters;
   std::map<std::string, double> metrics;  ///< NaN where null
   double cycle_p50_ms = 0;
 };

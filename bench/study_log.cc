@@ -1,7 +1,15 @@
 #include "sidestep/bench/study_log.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -14,72 +22,116 @@ namespace {
 
 using nlohmann::json;
 
+constexpr const char* kFirstLine = "{\"format\":\"sidestep-study-2\"}\n";
+
 json ToJson(const StudyRow& row) {
   json metrics = json::object();
   for (const auto& [name, value] : row.metrics) {
     metrics[name] = std::isnan(value) ? json() : json(value);
   }
   return {{"factors", row.factors},
+          {"drawn", row.drawn},
           {"outcome", row.outcome},
           {"error", row.error},
-          {"metrics", metrics}};
+          {"metrics", metrics},
+          {"identity",
+           {{"scenario", row.identity.scenario},
+            {"models", row.identity.models},
+            {"build", row.identity.build},
+            {"method", row.identity.method}}}};
 }
 
 // Throws json::exception for anything else.
 StudyRow FromJson(const json& line) {
   StudyRow row;
   line.at("factors").get_to(row.factors);
+  line.at("drawn").get_to(row.drawn);
   line.at("outcome").get_to(row.outcome);
   line.at("error").get_to(row.error);
   for (const auto& [name, value] : line.at("metrics").items()) {
     row.metrics[name] =
         value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
   }
+  const json& identity = line.at("identity");
+  identity.at("scenario").get_to(row.identity.scenario);
+  identity.at("models").get_to(row.identity.models);
+  identity.at("build").get_to(row.identity.build);
+  identity.at("method").get_to(row.identity.method);
   return row;
 }
 
 }  // namespace
 
-StudyLog::StudyLog(const std::string& path, const std::string& study, bool resume) : path_(path) {
-  const bool goes_on = resume && std::filesystem::exists(path);
-  if (goes_on) Read(study);
-  file_.open(path, goes_on ? std::ios::app : std::ios::trunc);
-  if (!goes_on) file_ << JsonLine({{"study", study}}) << std::endl;
-  if (!file_) throw InputError(path, "cannot be written");
+StudyLog::StudyLog(const std::string& path, bool resume) : path_(path) {
+  file_ = open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  if (file_ < 0) Fail("cannot be written");
+  try {
+    if (!std::filesystem::is_regular_file(path)) throw InputError(path, "is no regular file");
+    if (flock(file_, LOCK_EX | LOCK_NB) != 0) {
+      if (errno == EWOULDBLOCK) throw InputError(path, "another study is writing here just now");
+      Fail("cannot be locked");
+    }
+    Read(resume);
+  } catch (...) {
+    close(file_);
+    throw;
+  }
 }
 
-void StudyLog::Read(const std::string& study) {
-  std::ifstream file(path_);
+StudyLog::~StudyLog() { close(file_); }
+
+void StudyLog::Read(bool resume) {
+  std::ifstream file(path_, std::ios::binary);
   if (!file) throw InputError(path_, "cannot be read");
-  std::string text;
-  std::uintmax_t complete = 0;  // bytes up to the end of the last whole line
-  for (int number = 1; std::getline(file, text) && !file.eof(); ++number) {
-    complete += text.size() + 1;
+  const std::string all(std::istreambuf_iterator<char>(file), {});
+  const std::string first_line = kFirstLine;
+  if (first_line.starts_with(all)) {  // nothing, or a first line that was cut off
+    if (ftruncate(file_, 0) != 0) Fail("cannot be written");
+    Write(first_line);
+    return;
+  }
+  if (!all.starts_with(first_line)) {
+    throw InputError(path_, "is no log of a study by this version of sidestep");
+  }
+  if (!resume)
+    throw InputError(path_,
+                     "holds a study: go on with it by --resume, or choose "
+                     "another folder by --out");
+  std::size_t begin = first_line.size();
+  int number = 2;
+  for (std::size_t end; (end = all.find('\n', begin)) != std::string::npos; begin = end + 1) {
     try {
-      const json line = json::parse(text);
-      if (number > 1) {
-        StudyRow row = FromJson(line);
-        rows_[row.factors] = std::move(row);
-      } else if (line.at("study").get<std::string>() != study) {
-        throw InputError(path_, "is of a study with another scenario, version or other settings");
-      }
+      StudyRow row = FromJson(json::parse(all.substr(begin, end - begin)));
+      rows_[row.factors] = std::move(row);
     } catch (const json::exception&) {
       throw InputError(path_ + ":" + std::to_string(number), "is no row of a study");
     }
+    ++number;
   }
-  if (complete == 0) throw InputError(path_, "is no log of a study");
-  file.close();
-  std::filesystem::resize_file(path_, complete);
+  if (ftruncate(file_, static_cast<off_t>(begin)) != 0) Fail("cannot be written");
 }
 
-const StudyRow* StudyLog::Find(const std::map<std::string, std::string>& factors) const {
+const StudyRow* StudyLog::Find(const Factors& factors) const {
   const auto found = rows_.find(factors);
   return found == rows_.end() ? nullptr : &found->second;
 }
 
 void StudyLog::Append(const StudyRow& row) {
-  file_ << JsonLine(ToJson(row)) << std::endl;
-  if (!file_) throw InputError(path_, "cannot be written");
+  Write(JsonLine(ToJson(row)));
+}
+
+void StudyLog::Write(const std::string& line) {
+  for (std::size_t done = 0; done < line.size();) {
+    const ssize_t count = write(file_, line.data() + done, line.size() - done);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) Fail("cannot be written");
+    done += static_cast<std::size_t>(count);
+  }
+  if (fsync(file_) != 0) Fail("cannot be written");
+}
+
+void StudyLog::Fail(const std::string& what) const {
+  throw InputError(path_, what + ": " + std::strerror(errno));
 }
 
 }  // namespace sidestep::bench

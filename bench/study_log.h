@@ -1,6 +1,5 @@
 #pragma once
 
-#include <fstream>
 #include <map>
 #include <string>
 
@@ -9,27 +8,34 @@
 namespace sidestep::bench {
 
 /// The rows of a study in the order in which they are finished, so that nothing is lost when it is
-/// interrupted: a file of one JSON object a line, the first of which says what the study is.
+/// interrupted: a file of one JSON object a line, the first of which says what the file is. One
+/// process at a time has it.
 class StudyLog {
  public:
-  /// Begins the file anew; with `resume` goes on with the one that is there, if any, and drops a
+  /// Opens the file, and begins it if it is not there or does not even hold its first line; drops a
   /// last line that was cut off.
-  /// @param study what rows must have in common to belong together.
-  /// @throws InputError if the file cannot be written, is none of ours, or is of another study.
-  StudyLog(const std::string& path, const std::string& study, bool resume);
+  /// @param resume whether rows may be there; else they are refused.
+  /// @throws InputError if the file cannot be written, is none of ours, or another process has it.
+  StudyLog(const std::string& path, bool resume);
+  ~StudyLog();
+  StudyLog(const StudyLog&) = delete;
+  StudyLog& operator=(const StudyLog&) = delete;
 
-  /// Of the rows that were there: the one with these factors, or null.
-  const StudyRow* Find(const std::map<std::string, std::string>& factors) const;
+  /// Of the rows that were there: the latest with these factors, or null. Its trace and command are
+  /// not filled.
+  const StudyRow* Find(const Factors& factors) const;
   /// On the disk when it returns. Only from one thread at a time.
   /// @throws InputError if it cannot be written.
   void Append(const StudyRow& row);
 
  private:
-  void Read(const std::string& study);
+  void Read(bool resume);
+  void Write(const std::string& line);
+  [[noreturn]] void Fail(const std::string& what) const;  // with the reason that errno tells
 
   std::string path_;
-  std::map<std::map<std::string, std::string>, StudyRow> rows_;
-  std::ofstream file_;
+  int file_ = -1;
+  std::map<Factors, StudyRow> rows_;
 };
 
 }  // namespace sidestep::bench

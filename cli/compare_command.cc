@@ -1,4 +1,5 @@
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,13 @@
 namespace sidestep::cli {
 namespace {
 
+constexpr std::size_t kMostDifferences = 5;  // that get a column of their own
+
+std::string ParameterOf(const bench::ResultSummary& result, const std::string& key) {
+  const auto found = result.parameters.find(key);
+  return found == result.parameters.end() ? "-" : found->second;
+}
+
 std::string Number(const bench::ResultSummary& result, const char* metric, double scale,
                    const char* format) {
   return FiniteText(format, scale * result.metrics.at(metric));
@@ -19,20 +27,91 @@ std::string Verdict(const bench::ResultSummary& result) {
   return bench::Describe(result.outcome, !std::isnan(result.metrics.at("time_to_goal_s")));
 }
 
+// The parameters in which some result differs from the first; a text says nothing of a run.
+std::vector<std::string> FindDifferences(const std::vector<bench::ResultSummary>& results) {
+  std::set<std::string> keys;
+  for (const bench::ResultSummary& result : results) {
+    for (const auto& [key, value] : result.parameters) keys.insert(key);
+  }
+  keys.erase("description");
+  keys.erase("knowledge");  // has a column in any case
+  std::erase_if(keys, [&](const std::string& key) {
+    return std::all_of(results.begin(), results.end(), [&](const bench::ResultSummary& result) {
+      return ParameterOf(result, key) == ParameterOf(results.front(), key);
+    });
+  });
+  std::vector<std::string> sorted(keys.begin(), keys.end());
+  std::stable_partition(sorted.begin(), sorted.end(), [](const std::string& key) {
+    return key == "name" || key == "robot.model" || key == "planner.name" || key == "predictor" ||
+           key == "seed";
+  });
+  return sorted;
+}
+
+// The last word of a path, or all of it where another path ends in the same word.
+std::string ShortName(const std::string& key, const std::vector<std::string>& keys) {
+  const auto last = [](const std::string& path) { return path.substr(path.rfind('.') + 1); };
+  const auto is_alike = [&](const std::string& other) { return last(other) == last(key); };
+  return std::count_if(keys.begin(), keys.end(), is_alike) > 1 ? key : last(key);
+}
+
+using Line = std::vector<std::string>;
+
+void PrintTable(const std::vector<Line>& lines, std::size_t num_words) {
+  std::vector<std::size_t> widths(lines.front().size(), 0);
+  for (const Line& line : lines) {
+    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
+  }
+  for (const Line& line : lines) {
+    std::string text;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      const std::string padding(widths[i] - line[i].size(), ' ');
+      text += i < num_words ? line[i] + padding : padding + line[i];  // numbers to the right
+      if (i + 1 < line.size()) text += "  ";
+    }
+    Print("{}\n", text.substr(0, text.find_last_not_of(' ') + 1));
+  }
+}
+
 int Compare(const std::vector<std::string>& folders) {
   std::vector<bench::ResultSummary> results;
   for (const std::string& folder : folders)
     results.push_back(bench::ReadResult(folder + "/result.json"));
-  Print("{:<20} {:<34} {:>10} {:>10} {:>10} {:>8} {:>10} {:>9}\n", "planner knows", "what happened",
-        "contact", "clearance", "goal", "GP cost", "jerk RMS", "cycle");
-  Print("{:<20} {:<34} {:>10} {:>10} {:>10} {:>8} {:>10} {:>9}\n", "", "", "at [s]", "least [mm]",
-        "after [s]", "", "[rad/s^3]", "[ms CPU]");
-  for (const bench::ResultSummary& result : results) {
-    Print("{:<20} {:<34} {:>10} {:>10} {:>10} {:>8} {:>10} {:9.1f}\n", result.knowledge,
-          Verdict(result), Number(result, "first_contact_s", 1, "{:.2f}"),
-          Number(result, "min_clearance_m", 1e3, "{:.0f}"),
-          Number(result, "time_to_goal_s", 1, "{:.2f}"), Number(result, "gp_cost", 1, "{:.1f}"),
-          Number(result, "jerk_rms", 1, "{:.0f}"), result.cycle_p50_ms);
+  const std::vector<std::string> differences = FindDifferences(results);
+  const std::size_t num_shown = std::min(differences.size(), kMostDifferences);
+
+  Line heads = {"folder", "planner knows"}, units = {"", ""};
+  for (std::size_t i = 0; i < num_shown; ++i) {
+    heads.push_back(ShortName(differences[i], differences));
+  }
+  heads.push_back("what happened");
+  units.resize(heads.size());
+  const std::size_t num_words = heads.size();
+  for (const char* const head : {"contact", "clearance", "goal", "GP cost", "jerk RMS", "cycle"}) {
+    heads.emplace_back(head);
+  }
+  for (const char* const unit :
+       {"at [s]", "least [mm]", "after [s]", "", "[rad/s^3]", "[ms CPU]"}) {
+    units.emplace_back(unit);
+  }
+  std::vector<Line> lines = {heads, units};
+  for (std::size_t n = 0; n < results.size(); ++n) {
+    const bench::ResultSummary& result = results[n];
+    Line& line = lines.emplace_back(Line{folders[n], result.knowledge});
+    for (std::size_t i = 0; i < num_shown; ++i) {
+      line.push_back(ParameterOf(result, differences[i]));
+    }
+    line.push_back(Verdict(result));
+    line.push_back(Number(result, "first_contact_s", 1, "{:.2f}"));
+    line.push_back(Number(result, "min_clearance_m", 1e3, "{:.0f}"));
+    line.push_back(Number(result, "time_to_goal_s", 1, "{:.2f}"));
+    line.push_back(Number(result, "gp_cost", 1, "{:.1f}"));
+    line.push_back(Number(result, "jerk_rms", 1, "{:.0f}"));
+    line.push_back(FiniteText("{:.1f}", result.cycle_p50_ms));
+  }
+  PrintTable(lines, num_words);
+  for (std::size_t i = num_shown; i < differences.size(); ++i) {
+    Print("{}{}{}", i == num_shown ? "also different: " : ", ", differences[i], i + 1 == differences.size() ? "\n" : "");
   }
   return 0;
 }
@@ -41,8 +120,10 @@ int Compare(const std::vector<std::string>& folders) {
 
 void AddCompareCommand(CommandLine& line) {
   auto folders = std::make_shared<std::vector<std::string>>();
-  CLI::App* const compare =
-      line.app.add_subcommand("compare", "Print the results of several runs as one table");
+  CLI::App* const compare = line.app.add_subcommand(
+      "compare",
+      "Print the results of several runs as one table, with whatever differs "
+      "between their scenarios");
   compare->add_option("DIR", *folders, "Folders written by `sidestep run`")->required();
   compare->callback([&line, folders] { line.exit_code = Compare(*folders); });
 }

@@ -9,6 +9,7 @@
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/out_folder.h"
+#include "sidestep/cli/provenance.h"
 #include "sidestep/cli/versions.h"
 #include "sidestep/cli/wiring.h"
 #include "sidestep/core/atomic_file.h"
@@ -59,12 +60,10 @@ int Run(const RunOptions& options) {
       {"trace.h5", "result.json"});
   bench::EpisodeResult result =
       bench::RunEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths));
-  const auto versions = Versions();
-  for (const auto& [part, version] : versions) {
-    result.recording.header["version." + part] = version;
-  }
+  const bench::RunIdentity identity = Identify(problem.scenario, paths);
+  AddProvenance(identity, result.recording);
   record::WriteRecording(result.recording, out + "/trace.h5");
-  const std::string json = bench::ResultJson(result, problem.scenario, versions);
+  const std::string json = bench::ResultJson(result, problem.scenario, identity, Versions());
   WriteFile(out + "/result.json", json);
   if (options.json) {
     PrintText(json);

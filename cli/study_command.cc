@@ -1,12 +1,15 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cstdint>
+#include <exception>
 #include <filesystem>
-#include <map>
+#include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "sidestep/bench/reproduce/parallel.h"
@@ -16,159 +19,179 @@
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/out_folder.h"
-#include "sidestep/cli/versions.h"
+#include "sidestep/cli/provenance.h"
+#include "sidestep/cli/study_cases.h"
 #include "sidestep/cli/wiring.h"
 #include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
-#include "sidestep/core/text_file.h"
+#include "sidestep/scenarios/variations.h"
 
 namespace sidestep::cli {
 namespace {
 
-// Stands in the place of a kind of knowledge: who knows all and has time.
-constexpr const char* kSearch = "search";
-constexpr std::uintmax_t kMaxScenarioBytes = 1 << 20;
+constexpr int kMaxJobs = 256;
+constexpr std::size_t kFailuresShown = 5;
 
 struct StudyOptions {
-  std::string scenario;
-  std::vector<std::string> settings, knowledge, predictors;
-  std::vector<double> speeds;
-  int episodes = 0, search = 0, jobs = 1;
+  StudySpace space;
+  int jobs = 0;
   bool resume = false;
-  std::string down, across, out = "out/study";
+  TableAxes axes;
+  std::string traces = "none", out = "out/study";
 };
 
-using Factors = std::map<std::string, std::string>;
-
-// Every combination of `cases` with the values of one more factor.
-std::vector<Factors> Cross(const std::vector<Factors>& cases, const std::string& factor,
-                           const std::vector<std::string>& values) {
-  if (values.empty()) return cases;
-  for (auto value = values.begin(); value != values.end(); ++value) {
-    if (std::find(values.begin(), value, *value) != value) {
-      throw InputError(factor, "'" + *value + "' is given twice");
-    }
-  }
-  std::vector<Factors> crossed;
-  for (const Factors& one : cases) {
-    for (const std::string& value : values) {
-      crossed.push_back(one);
-      crossed.back()[factor] = value;
-    }
-  }
-  return crossed;
+bool IsFailure(const bench::StudyRow& row) {
+  return row.outcome != ToString(bench::Outcome::kGoal);
 }
 
-std::string Short(double value) { return fmt::format("{:.12g}", value); }
+class Study {
+ public:
+  Study(const StudyOptions& options, DataPaths paths)
+      : options_(options), paths_(std::move(paths)), cases_(StudyCases(options.space, paths_)) {}
 
-// What varies: the file's choices that no setting fixes, then what the flags list.
-std::vector<Factors> Cases(const StudyOptions& options, const scenarios::Settings& settings,
-                           const DataPaths& paths) {
-  std::vector<Factors> cases = {{}};
-  for (const auto& [choice, values] :
-       scenarios::ScenarioChoices(FindScenario(options.scenario, paths))) {
-    if (settings.count(choice) == 0) cases = Cross(cases, choice, values);
+  int Run() {
+    const TableAxes axes = ChooseAxes(cases_, options_.axes);
+    CheckBeforeTheWork();
+    out_ = MakeOutFolder(options_.out, {"study.csv", "study.md"});
+    bench::StudyLog log(out_ + "/study.jsonl", options_.resume);
+    CheckResumed(log);
+    if (options_.traces != "none") MakeOutFolder(out_ + "/traces", {});
+    const std::vector<bench::StudyRow> rows = RunCases(log);
+    WriteFile(out_ + "/study.csv", bench::StudyCsv(rows));
+    const std::string table = bench::OutcomeTable(rows, axes.down, axes.across);
+    WriteFile(out_ + "/study.md", table);
+    Print("{}\nwritten {}/study.csv, {}/study.md\n", table, out_, out_);
+    PrintFailures(rows);
+    const bool all_whole = std::none_of(rows.begin(), rows.end(), [](const bench::StudyRow& row) {
+      return row.outcome == "failed" || row.outcome == ToString(bench::Outcome::kAborted);
+    });
+    return all_whole ? 0 : 1;
   }
-  std::vector<std::string> speeds, seeds;
-  for (const double speed : options.speeds) speeds.push_back(Short(speed));
-  for (int seed = 1; seed <= options.episodes; ++seed) seeds.push_back(std::to_string(seed));
-  cases = Cross(cases, "speed_m_s", speeds);
-  std::vector<std::string> knowledge = options.knowledge;
-  if (std::find(knowledge.begin(), knowledge.end(), kSearch) != knowledge.end()) {
-    throw InputError("--knowledge", "'search' is asked for by --search");
-  }
-  if (options.search > 0) knowledge.push_back(kSearch);
-  cases = Cross(cases, "knowledge", knowledge);
-  cases = Cross(cases, "predictor", options.predictors);
-  return Cross(cases, "seed", seeds);
-}
 
-Problem MakeCase(const StudyOptions& options, scenarios::Settings settings, const Factors& factors,
-                 const DataPaths& paths) {
-  Overrides overrides;
-  for (const auto& [factor, value] : factors) {
-    if (factor == "speed_m_s") {
-      overrides.speed_m_s = std::stod(value);
-    } else if (factor == "knowledge") {
-      if (value != kSearch) overrides.knowledge = value;
-    } else if (factor == "predictor") {
-      overrides.predictor = value;
-    } else {
-      settings[factor] = value;  // the seed and the choices
+ private:
+  Problem Load(const Factors& factors) const {
+    return LoadCase(options_.space.scenario, factors, paths_);
+  }
+  bench::RunIdentity IdentityOf(const Factors& factors, const scenarios::Scenario& scenario) const {
+    bench::RunIdentity identity = Identify(scenario, paths_);
+    if (IsSearch(factors)) identity.method = "search " + std::to_string(options_.space.search);
+    return identity;
+  }
+  void ForAll(const std::function<void(std::size_t)>& task) const {
+    bench::RunTasks(static_cast<int>(cases_.size()), options_.jobs,
+                    [&](int i) { task(static_cast<std::size_t>(i)); });
+  }
+
+  // Complains where no combination makes sense, and where seeds would be counted for nothing. Of
+  // those that differ only by their seeds the first stands for all.
+  void CheckBeforeTheWork() const {
+    std::exception_ptr first_error;
+    bool any_is_sound = false, seed_matters = false;
+    for (const Factors& one : cases_) {
+      const auto seed = one.find("seed");
+      if (options_.space.episodes > 0 && seed->second != "1") continue;
+      try {
+        const Problem problem = Load(one);
+        any_is_sound = true;
+        seed_matters = seed_matters || !scenarios::WhatTheSeedChanges(problem.scenario).empty();
+      } catch (const InputError& error) {
+        if (!first_error) first_error = std::current_exception();
+      }
+    }
+    if (!any_is_sound) std::rethrow_exception(first_error);
+    if (options_.space.episodes > 0 && !seed_matters) {
+      throw InputError("--episodes",
+                       "a seed changes nothing in this scenario: it has no variations, nothing "
+                       "walks at random, and its sensor is perfect");
     }
   }
-  overrides.settings = settings;
-  return LoadProblem(options.scenario, overrides, paths);
-}
 
-// What rows must have in common to stand in one table: all that is not a factor of theirs.
-std::string Identity(const StudyOptions& options, const scenarios::Settings& settings,
-                     const DataPaths& paths) {
-  std::string text = VersionText() + "\n";
-  for (const auto& [key, value] : settings) text += key + "=" + value + "\n";
-  text += "varied: " + std::string(options.episodes > 0 ? "yes" : "no") + "\n";
-  text += "guesses: " + std::to_string(options.search) + "\n";
-  return text + ReadTextFile(FindScenario(options.scenario, paths), kMaxScenarioBytes);
-}
-
-int Study(const StudyOptions& options) {
-  const DataPaths paths = FindDataPaths();
-  const scenarios::Settings settings = ParseSettings(options.settings);
-  if (options.episodes > 0 && settings.count("seed") != 0) {
-    throw InputError("--set seed", "is what --episodes varies");
-  }
-  const std::vector<Factors> cases = Cases(options, settings, paths);
-  for (const std::string* const factor : {&options.down, &options.across}) {
-    if (cases.front().count(*factor) == 0) {
-      throw InputError(factor == &options.down ? "--down" : "--across",
-                       "'" + *factor + "' does not vary in this study");
-    }
-  }
-  for (const Factors& one : cases) {  // complain before the work begins
-    const auto seed = one.find("seed");
-    if (seed == one.end() || seed->second == "1") MakeCase(options, settings, one, paths);
-  }
-  const std::string out = MakeOutFolder(options.out, {"study.csv", "study.md"});
-  if (!options.resume && std::filesystem::exists(out + "/study.jsonl")) {
-    throw InputError("--out", "'" + out +
-                                  "' holds a study: go on with it by --resume, or choose another "
-                                  "folder");
+  // Rows of something else must not stand in one table with those to come.
+  void CheckResumed(const bench::StudyLog& log) const {
+    ForAll([&](std::size_t i) {
+      const bench::StudyRow* const row = log.Find(cases_[i]);
+      if (row == nullptr) return;
+      const bench::RunIdentity now = IdentityOf(cases_[i], Load(cases_[i]).scenario);
+      const bench::RunIdentity& then = row->identity;
+      const char* changed = nullptr;
+      if (then.build != now.build) changed = "another build of sidestep";
+      if (then.models != now.models) changed = "another robot (its files have changed)";
+      if (then.method != now.method) changed = "another --search";
+      if (then.scenario != now.scenario) changed = "another scenario";
+      if (changed == nullptr) return;
+      throw InputError(out_ + "/study.jsonl", std::string("holds rows of ") + changed);
+    });
   }
 
-  bench::StudyLog log(out + "/study.jsonl", Identity(options, settings, paths), options.resume);
-  std::vector<bench::StudyRow> rows(cases.size());
-  std::mutex finishing;
-  std::size_t num_done = 0;
-  bench::RunTasks(static_cast<int>(cases.size()), options.jobs, [&](int i) {
-    const auto n = static_cast<std::size_t>(i);
-    if (const bench::StudyRow* const row = log.Find(cases[n])) {
-      rows[n] = *row;
+  std::vector<bench::StudyRow> RunCases(bench::StudyLog& log) const {
+    std::vector<bench::StudyRow> rows(cases_.size());
+    std::mutex finishing;
+    std::size_t num_done = 0;
+    ForAll([&](std::size_t i) {
+      const bench::StudyRow* const known = log.Find(cases_[i]);
+      rows[i] = known != nullptr && !LacksTrace(*known) ? *known : RunCase(cases_[i]);
+      rows[i].command = RunCommandOf(options_.space.scenario, cases_[i]);
+      if (std::filesystem::exists(out_ + "/" + TraceOf(rows[i]))) rows[i].trace = TraceOf(rows[i]);
       const std::lock_guard lock(finishing);
-      ++num_done;
-      return;
-    }
-    const Problem problem = MakeCase(options, settings, cases[n], paths);
-    const auto knowledge = cases[n].find("knowledge");
-    const bool search = knowledge != cases[n].end() && knowledge->second == kSearch;
-    rows[n] = search
-                  ? bench::RunStudySearch(problem.scenario, problem.robot, options.search, cases[n])
-                  : bench::RunStudyEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths),
-                                           cases[n]);
-    const std::lock_guard lock(finishing);
-    log.Append(rows[n]);
-    ++num_done;
-    if (num_done % 50 == 0) PrintError("{} of {}\n", num_done, cases.size());
-  });
+      const bool was_refused = rows[i].identity.build.empty();
+      if (known == nullptr && !was_refused) log.Append(rows[i]);
+      if (++num_done % 50 == 0) PrintError("{} of {}\n", num_done, cases_.size());
+    });
+    return rows;
+  }
 
-  WriteFile(out + "/study.csv", bench::StudyCsv(rows));
-  const std::string table = bench::OutcomeTable(rows, options.down, options.across);
-  WriteFile(out + "/study.md", table);
-  Print("{}\nwritten {}/study.csv, {}/study.md\n", table, out, out);
-  const bool all_whole = std::none_of(rows.begin(), rows.end(), [](const bench::StudyRow& row) {
-    return row.outcome == "failed" || row.outcome == ToString(bench::Outcome::kAborted);
-  });
-  return all_whole ? 0 : 1;
-}
+  // A combination that is refused is a row too.
+  bench::StudyRow RunCase(const Factors& factors) const {
+    std::optional<Problem> problem;
+    try {
+      problem = Load(factors);
+    } catch (const InputError& error) {
+      return bench::FailedRow(factors, error.what());
+    }
+    bench::StudyEpisode episode;
+    if (IsSearch(factors)) {
+      episode.row =
+          bench::RunStudySearch(problem->scenario, problem->robot, options_.space.search, factors);
+    } else {
+      episode = bench::RunStudyEpisode(problem->scenario, problem->robot, SimulatedWorlds(paths_),
+                                       factors);
+    }
+    episode.row.identity = IdentityOf(factors, problem->scenario);
+    KeepTrace(episode);
+    return std::move(episode.row);
+  }
+
+  bool WantsTrace(const bench::StudyRow& row) const {
+    return options_.traces == "all" || (options_.traces == "failures" && IsFailure(row));
+  }
+  std::string TraceOf(const bench::StudyRow& row) const {
+    return "traces/" + bench::RunId(row.identity) + ".h5";
+  }
+  bool LacksTrace(const bench::StudyRow& row) const {
+    return WantsTrace(row) && !IsSearch(row.factors) &&
+           !std::filesystem::exists(out_ + "/" + TraceOf(row));
+  }
+  void KeepTrace(bench::StudyEpisode& episode) const {
+    if (!episode.recording || !WantsTrace(episode.row)) return;
+    AddProvenance(episode.row.identity, *episode.recording);
+    record::WriteRecording(*episode.recording, out_ + "/" + TraceOf(episode.row));
+  }
+
+  void PrintFailures(const std::vector<bench::StudyRow>& rows) const {
+    std::size_t count = 0;
+    for (const bench::StudyRow& row : rows) {
+      if (!IsFailure(row) || row.command.empty()) continue;
+      if (count == 0) Print("run again what did not reach the goal, e.g.\n");
+      if (++count <= kFailuresShown) Print("  {}\n", row.command);
+    }
+    if (count > kFailuresShown) Print("  ({} in all: study.csv)\n", count);
+  }
+
+  const StudyOptions& options_;
+  DataPaths paths_;
+  std::vector<Factors> cases_;
+  std::string out_;
+};
 
 }  // namespace
 
@@ -178,38 +201,51 @@ void AddStudyCommand(CommandLine& line) {
       "study",
       "Run every combination of a scenario's choices and of the flags below; one row an episode "
       "in study.csv, a table of outcomes in study.md");
-  study->add_option("SCENARIO", options->scenario, "A name (see `sidestep list`) or a path")
+  StudySpace& space = options->space;
+  study->add_option("SCENARIO", space.scenario, "A name (see `sidestep list`) or a path")
       ->required();
-  study->add_option("--set", options->settings, "KEY=VALUE, as in `sidestep run`; fixes a choice")
+  study->add_option("--set", space.settings, "KEY=VALUE, as in `sidestep run`; fixes a choice")
       ->allow_extra_args(false);
-  study->add_option("--knowledge", options->knowledge, "Kinds of knowledge, with commas")
+  study->add_option("--knowledge", space.knowledge, "Kinds of knowledge, with commas")
       ->delimiter(',');
-  study->add_option("--predictor", options->predictors, "Predictors, with commas")->delimiter(',');
-  study
-      ->add_option("--speed", options->speeds, "Speeds of every moving obstacle [m/s], with commas")
+  study->add_option("--predictor", space.predictors, "Predictors, with commas")->delimiter(',');
+  study->add_option("--speed", space.speeds, "Speeds of every moving obstacle [m/s], with commas")
       ->delimiter(',')
       ->check(NumberFrom(0.0, 100.0));
   study
-      ->add_option("--episodes", options->episodes,
-                   "Episodes of each combination, seeds 1, 2, ...: each changes the obstacles' "
-                   "speed (x 0.75 to 1.3) and start (0 to 0.5 s later)")
+      ->add_option(
+          "--episodes", space.episodes,
+          "Episodes of each combination, seeds 1, 2, ...: what a seed changes the scenario "
+          "says (variations, random walks, the sensor's noise)")
       ->check(NumberFrom(0, 100000));
   study
-      ->add_option("--search", options->search,
+      ->add_option("--search", space.search,
                    "Also look for a free motion among so many guesses, knowing all: a further "
                    "kind of knowledge, `search`")
       ->check(NumberFrom(0, 100000));
-  study->add_option("--down", options->down, "What the table lists down: a choice, speed_m_s, ...")
-      ->required();
-  study->add_option("--across", options->across, "What it lists across: knowledge, predictor, ...")
-      ->required();
-  study->add_option("-j,--jobs", options->jobs, "Episodes at a time [1]")
-      ->check(NumberFrom(1, 256));
+  study->add_option("--down", options->axes.down,
+                    "What the table lists down: a choice, speed_m_s, a key of --set, ... [what "
+                    "varies]");
+  study->add_option("--across", options->axes.across,
+                    "What it lists across: knowledge, predictor, ... [what varies]");
+  study->add_option("-j,--jobs", options->jobs, "Episodes at a time [the number of cores]")
+      ->check(NumberFrom(1, kMaxJobs));
+  study
+      ->add_option("--traces", options->traces,
+                   "Traces to keep: none, failures (all that did not reach the goal), all; of an "
+                   "episode that --resume finds without one, it is made by running it again [none]")
+      ->check(CLI::IsMember({"none", "failures", "all"}));
   study->add_flag("--resume", options->resume,
                   "Go on with a study that was interrupted, or that is to have more episodes: "
                   "what its folder holds is not run again");
   study->add_option("--out", options->out, "Folder for the results [out/study]");
-  study->callback([&line, options] { line.exit_code = Study(*options); });
+  study->callback([&line, options] {
+    if (options->jobs == 0) {
+      options->jobs =
+          std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, kMaxJobs);
+    }
+    line.exit_code = Study(*options, FindDataPaths()).Run();
+  });
 }
 
 }  // namespace sidestep::cli

@@ -2,6 +2,7 @@
 
 #include <gnu/libc-version.h>
 
+#include "sidestep/cli/build_id.h"
 #include "sidestep/cli/build_info.h"  // made by CMake
 #include "sidestep/planner/registry.h"
 #include "sidestep/record/recording_file.h"
@@ -22,12 +23,12 @@ std::string CpuFeatures() {
 }  // namespace
 
 std::string VersionNumber() { return std::string("sidestep ") + kVersion; }
-std::string VersionText() { return VersionNumber() + " (" + kCommit + ")"; }
+std::string VersionText() { return VersionNumber() + " (build " + BuildId().substr(0, 12) + ")"; }
 
 std::map<std::string, std::string> Versions() {
   return {
       {"sidestep", kVersion},
-      {"commit", kCommit},
+      {"build_id", BuildId()},
       {"build_type", kBuildType},
       {"compiler", kCompiler},
       {"mujoco", sim::MujocoVersion()},

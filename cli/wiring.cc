@@ -36,12 +36,6 @@ void Override(scenarios::Scenario& scenario, const Overrides& overrides) {
   }
 }
 
-std::vector<std::string> KnowledgeWords() {
-  std::vector<std::string> words;
-  for (const sdf::Knowledge knowledge : sdf::kAllKnowledge) words.push_back(ToString(knowledge));
-  return words;
-}
-
 // Complains about `word` where it was written: the flag if there was one, else the file's line.
 void CheckWord(const scenarios::Scenario& scenario, const std::string& key, const std::string& word,
                const std::vector<std::string>& known, const char* flag = nullptr) {
@@ -97,6 +91,12 @@ Problem AddRobot(scenarios::Scenario scenario, const DataPaths& paths) {
 }
 
 }  // namespace
+
+std::vector<std::string> KnowledgeWords() {
+  std::vector<std::string> words;
+  for (const sdf::Knowledge knowledge : sdf::kAllKnowledge) words.push_back(ToString(knowledge));
+  return words;
+}
 
 scenarios::Settings ParseSettings(const std::vector<std::string>& texts) {
   scenarios::Settings settings;

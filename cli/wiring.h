@@ -23,6 +23,9 @@ struct Overrides {
 /// KEY=VALUE each. @throws InputError for one without a key or a =, or a key given twice.
 scenarios::Settings ParseSettings(const std::vector<std::string>& texts);
 
+/// The kinds of knowledge there are.
+std::vector<std::string> KnowledgeWords();
+
 /// A scenario that is ready to run, and its robot.
 struct Problem {
   scenarios::Scenario scenario;

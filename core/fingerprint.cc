@@ -1,6 +1,6 @@
 #include "sidestep/core/fingerprint.h"
 
-#include <cstdio>
+#include <fmt/core.h>
 
 namespace sidestep {
 
@@ -11,9 +11,7 @@ void Fingerprint::Add(std::string_view part) {
 }
 
 std::string Fingerprint::Text() const {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash_));
-  return text;
+  return fmt::format("{:016x}", hash_);
 }
 
 }  // namespace sidestep

@@ -1,10 +1,10 @@
 #include "sidestep/core/yaml_json.h"
 
+#include <fmt/core.h>
 #include <yaml-cpp/yaml.h>
 
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 #include <string_view>
 
@@ -16,9 +16,7 @@ std::string QuotedJson(const std::string& text) {
   for (const char c : text) {
     if (c == '"' || c == '\\') quoted += '\\';
     if (static_cast<unsigned char>(c) < 32) {
-      char escaped[8];
-      std::snprintf(escaped, sizeof escaped, "\\u%04x", static_cast<unsigned>(c));
-      quoted += escaped;
+      quoted += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
     } else {
       quoted += c;
     }

@@ -34,6 +34,7 @@ SourceTree ReadSourceTree(const std::filesystem::path& root);
 ///  - types: none of one name twice in a namespace, and each in that of its module;
 ///  - crafts: modules write files, format numbers and print in one place each;
 ///  - the top level: no folder but the modules and a few known ones;
+///  - random numbers: no distribution of the C++ library in a module;
 ///  - paths: no file names a folder that only one machine has.
 std::vector<std::string> FindViolations(const SourceTree& tree,
                                         const std::vector<ModuleRule>& rules);

@@ -112,6 +112,9 @@ INSTANTIATE_TEST_SUITE_P(
                "base/a.cc:2: writes a file by std::ofstream; core/atomic_file.h is there for it"},
         Breach{"UnknownFolder", "utils/x.txt", "",
                "utils: a folder at the top that is no module; see docs/architecture.md"},
+        Breach{"RandomNumbersOfALibrary", "base/a.cc",
+               "\nstd::normal_distribution<double> normal;\n",
+               "base/a.cc:2: random numbers come from core/random.h"},
         Breach{"MachinePath", "README.md",
                "a\nsee /ho"
                "me/someone/notes\n",

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "sidestep/bench/metrics/registry.h"
 #include "sidestep/core/atomic_file.h"
@@ -25,6 +26,8 @@ EpisodeResult SomeResult() {
   result.wall_s = 3;
   return result;
 }
+
+const RunIdentity kIdentity = {"scene", "models", "build", ""};
 
 scenarios::Scenario SomeScenario() {
   return scenarios::LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/hsr_walkway.yaml");
@@ -46,7 +49,7 @@ class ResultFile : public ::testing::Test {
 };
 
 TEST_F(ResultFile, IsReadBackAsItWasWritten) {
-  WriteFile(path_, ResultJson(SomeResult(), SomeScenario(), {{"mujoco", "2.2.2"}}));
+  WriteFile(path_, ResultJson(SomeResult(), SomeScenario(), kIdentity, {{"mujoco", "2.2.2"}}));
   const ResultSummary summary = ReadResult(path_);
   EXPECT_EQ(summary.outcome, Outcome::kCollision);
   EXPECT_EQ(summary.knowledge, "prediction");
@@ -60,7 +63,7 @@ TEST_F(ResultFile, OfAnAbortedRunIsReadBackThoughItHadNoPlanningCycle) {
   result.outcome = Outcome::kAborted;
   result.reason = "the robot's \"power\" failed";
   result.times["cycle"].clear();
-  WriteTextFile(path_, ResultJson(result, SomeScenario(), {}));
+  WriteFile(path_, ResultJson(result, SomeScenario(), {}));
   const ResultSummary summary = ReadResult(path_);
   EXPECT_EQ(summary.outcome, Outcome::kAborted);
   EXPECT_TRUE(std::isnan(summary.cycle_p50_ms));
@@ -73,7 +76,7 @@ TEST_F(ResultFile, OfAnAbortedRunIsReadBackThoughItHadNoPlanningCycle) {
 TEST_F(ResultFile, OfAnUnknownOutcomeIsRefused) {
   auto json = nlohmann::json::parse(ResultJson(SomeResult(), SomeScenario(), {}));
   json["outcome"] = "success";
-  WriteTextFile(path_, json.dump());
+  WriteFile(path_, json.dump());
   EXPECT_EQ(Complaint(), path_ + ": is not a whole result: no outcome is 'success'");
 }
 
@@ -81,18 +84,42 @@ TEST_F(ResultFile, KeepsEverythingThatMayDifferUnderOneKey) {
   EpisodeResult slow = SomeResult();
   slow.wall_s = 30;
   slow.times["cycle"] = {1, 2, 3};
-  auto a = nlohmann::json::parse(ResultJson(SomeResult(), SomeScenario(), {}));
-  auto b = nlohmann::json::parse(ResultJson(slow, SomeScenario(), {}));
+  auto a = nlohmann::json::parse(ResultJson(SomeResult(), SomeScenario(), kIdentity, {}));
+  auto b = nlohmann::json::parse(ResultJson(slow, SomeScenario(), kIdentity, {}));
   EXPECT_NE(a, b);
   a.erase("wall_clock");
   b.erase("wall_clock");
   EXPECT_EQ(a, b);
 }
 
+TEST_F(ResultFile, HoldsEveryParameterOfTheScenarioAsTheFilesOfScenariosNameThem) {
+  const auto json = nlohmann::json::parse(ResultJson(SomeResult(), SomeScenario(), kIdentity, {}));
+  EXPECT_EQ(json["parameters"]["planner"]["epsilon_m"], 0.2);
+  EXPECT_EQ(json["parameters"]["robot"]["base"]["position_m"], (std::vector<double>{0, 0, 0.4}));
+  EXPECT_EQ(json["parameters"]["moving_obstacles"][0]["motion"]["linear"]["speed_m_s"], 1.4);
+  EXPECT_EQ(json["parameters"]["planner"]["velocity_limits"], true);
+  // The whole of it: what it says is, as YAML, the scenario.
+  const scenarios::Scenario again =
+      scenarios::ParseScenario(json["parameters"].dump(), "again.yaml");
+  EXPECT_EQ(scenarios::ToYaml(again), scenarios::ToYaml(SomeScenario()));
+  WriteFile(path_, json.dump());
+  const auto parameters = ReadResult(path_).parameters;
+  EXPECT_EQ(parameters.at("planner.epsilon_m"), "0.2");
+  EXPECT_EQ(parameters.at("moving_obstacles[0].motion.linear.speed_m_s"), "1.4");
+  EXPECT_EQ(parameters.at("robot.base.position_m"), "[0,0,0.4]");
+}
+
+TEST_F(ResultFile, TellsWhatWasRun) {
+  const auto json = nlohmann::json::parse(ResultJson(SomeResult(), SomeScenario(), kIdentity, {}));
+  EXPECT_EQ(json["identity"]["run"], RunId(kIdentity));
+  EXPECT_EQ(json["identity"]["scenario"], "scene");
+  EXPECT_EQ(json["identity"]["models"], "models");
+}
+
 TEST_F(ResultFile, WritesCountsAsWholeNumbers) {
   EpisodeResult result = SomeResult();
   result.recording.metrics["replans"] = 35;
-  const auto json = nlohmann::json::parse(ResultJson(result, SomeScenario(), {}));
+  const auto json = nlohmann::json::parse(ResultJson(result, SomeScenario(), kIdentity, {}));
   EXPECT_TRUE(json["replans"].is_number_integer());
   EXPECT_EQ(json["replans"], 35);
 }

@@ -19,6 +19,8 @@ using ::testing::HasSubstr;
 StudyRow Row(const std::string& seed) {
   StudyRow row;
   row.factors = {{"behaviour", "stop"}, {"seed", seed}};
+  row.drawn = {{"delay_s", 0.1 + 1e-17}};
+  row.identity = {"scene", "models", "build", "search 40"};
   row.outcome = "failed";
   row.error = "a \"word\",\nquoted";
   row.metrics = {{"min_clearance_m", 0.1 + 1e-17}, {"first_contact_s", NAN}};
@@ -28,9 +30,9 @@ StudyRow Row(const std::string& seed) {
 class StudyLogTest : public ::testing::Test {
  protected:
   void WriteText(const std::string& text) const { std::ofstream(path_) << text; }
-  std::string MessageOfResuming(const std::string& study) const {
+  std::string MessageOfOpening(bool resume) const {
     try {
-      StudyLog log(path_, study, /*resume=*/true);
+      StudyLog log(path_, resume);
     } catch (const InputError& error) {
       return error.what();
     }
@@ -43,56 +45,90 @@ class StudyLogTest : public ::testing::Test {
 
 TEST_F(StudyLogTest, GivesBackTheRowsThatItWasGiven) {
   {
-    StudyLog log(path_, "mine", /*resume=*/false);
+    StudyLog log(path_, /*resume=*/false);
     log.Append(Row("1"));
     log.Append(Row("2"));
   }
-  const StudyLog log(path_, "mine", /*resume=*/true);
+  const StudyLog log(path_, /*resume=*/true);
   const StudyRow* const row = log.Find(Row("2").factors);
   ASSERT_NE(row, nullptr);
   EXPECT_EQ(row->outcome, "failed");
   EXPECT_EQ(row->error, Row("2").error);
   EXPECT_EQ(row->metrics.at("min_clearance_m"), 0.1 + 1e-17);
   EXPECT_TRUE(std::isnan(row->metrics.at("first_contact_s")));
+  EXPECT_EQ(row->drawn, Row("2").drawn);
+  EXPECT_EQ(row->identity.scenario, "scene");
+  EXPECT_EQ(row->identity.models, "models");
+  EXPECT_EQ(row->identity.build, "build");
+  EXPECT_EQ(row->identity.method, "search 40");
   EXPECT_EQ(log.Find(Row("3").factors), nullptr);
 }
 
 TEST_F(StudyLogTest, LosesAtMostTheRowThatWasBeingWritten) {
   {
-    StudyLog log(path_, "mine", /*resume=*/false);
+    StudyLog log(path_, /*resume=*/false);
     log.Append(Row("1"));
     log.Append(Row("2"));
   }
   const auto size = std::filesystem::file_size(path_);
   std::filesystem::resize_file(path_, size - 3);
   {
-    StudyLog log(path_, "mine", /*resume=*/true);
+    StudyLog log(path_, /*resume=*/true);
     EXPECT_NE(log.Find(Row("1").factors), nullptr);
     EXPECT_EQ(log.Find(Row("2").factors), nullptr);
     log.Append(Row("2"));
   }
   EXPECT_EQ(std::filesystem::file_size(path_), size);
-  EXPECT_NE(StudyLog(path_, "mine", /*resume=*/true).Find(Row("2").factors), nullptr);
+  EXPECT_NE(StudyLog(path_, /*resume=*/true).Find(Row("2").factors), nullptr);
 }
 
-TEST_F(StudyLogTest, BeginsAnewWhereNothingIsToBeResumed) {
-  { StudyLog(path_, "mine", /*resume=*/true).Append(Row("1")); }
-  EXPECT_EQ(StudyLog(path_, "mine", /*resume=*/false).Find(Row("1").factors), nullptr);
+TEST_F(StudyLogTest, DoesNotTouchRowsThatNobodyWantsToGoOnWith) {
+  { StudyLog(path_, /*resume=*/false).Append(Row("1")); }
+  EXPECT_THAT(MessageOfOpening(/*resume=*/false), HasSubstr("study.jsonl: holds a study: go on"));
+  EXPECT_NE(StudyLog(path_, /*resume=*/true).Find(Row("1").factors), nullptr);
 }
 
-TEST_F(StudyLogTest, RefusesWhatIsNotTheSameStudy) {
-  { StudyLog log(path_, "mine", /*resume=*/false); }
-  EXPECT_THAT(MessageOfResuming("another"), HasSubstr("study.jsonl: is of a study with another"));
+TEST_F(StudyLogTest, BeginsAnewWhereNotEvenTheFirstLineIsWhole) {
+  { StudyLog log(path_, /*resume=*/false); }
+  const auto whole = std::filesystem::file_size(path_);
+  for (const bool resume : {false, true}) {
+    for (const std::uintmax_t size : {std::uintmax_t{0}, whole - 1}) {
+      std::filesystem::resize_file(path_, size);
+      EXPECT_EQ(MessageOfOpening(resume), "");
+      EXPECT_EQ(std::filesystem::file_size(path_), whole);
+    }
+  }
+}
+
+TEST_F(StudyLogTest, IsRefusedWhileAnotherStudyHasIt) {
+  StudyLog first(path_, /*resume=*/false);
+  EXPECT_THAT(MessageOfOpening(/*resume=*/true), HasSubstr("another study is writing here"));
+  first.Append(Row("1"));
+  EXPECT_THAT(MessageOfOpening(/*resume=*/false), HasSubstr("another study is writing here"));
+}
+
+TEST_F(StudyLogTest, TakesTextThatIsNotUtf8) {
+  StudyRow row = Row("1");
+  row.error = "caf\xe9.yaml: no such file";
+  { StudyLog(path_, /*resume=*/false).Append(row); }
+  const StudyLog log(path_, /*resume=*/true);
+  ASSERT_NE(log.Find(row.factors), nullptr);
+  EXPECT_THAT(log.Find(row.factors)->error, HasSubstr(".yaml: no such file"));
+}
+
+TEST_F(StudyLogTest, RefusesWhatIsNoLog) {
   WriteText("seed,outcome\n1,goal\n");
-  EXPECT_THAT(MessageOfResuming("mine"), HasSubstr("study.jsonl:1: is no row of a study"));
-  WriteText("{\"study\":\"mine\"}\n{\"outcome\":\"goal\"}\n");
-  EXPECT_THAT(MessageOfResuming("mine"), HasSubstr("study.jsonl:2: is no row of a study"));
-  WriteText("{\"study\":\"mi");
-  EXPECT_THAT(MessageOfResuming("mine"), HasSubstr("study.jsonl: is no log of a study"));
+  EXPECT_THAT(MessageOfOpening(/*resume=*/true), HasSubstr("study.jsonl: is no log of a study"));
+  EXPECT_THAT(MessageOfOpening(/*resume=*/false), HasSubstr("study.jsonl: is no log of a study"));
+  std::filesystem::remove(path_);
+  { StudyLog log(path_, /*resume=*/false); }
+  std::ofstream(path_, std::ios::app) << "{\"outcome\":\"goal\"}\n";
+  EXPECT_THAT(MessageOfOpening(/*resume=*/true), HasSubstr("study.jsonl:2: is no row of a study"));
 }
 
 TEST_F(StudyLogTest, SaysWhereItCannotBeWritten) {
-  EXPECT_THROW(StudyLog("/nowhere/study.jsonl", "mine", /*resume=*/false), InputError);
+  EXPECT_THROW(StudyLog("/nowhere/study.jsonl", /*resume=*/false), InputError);
+  EXPECT_THROW(StudyLog("/dev/full", /*resume=*/false), InputError);
 }
 
 }  // namespace

@@ -49,6 +49,30 @@ TEST(OutcomeTable, CountsGoalsAndSaysHowTheOthersEnded) {
             "| timeout | 0 | 1 |\n");
 }
 
+TEST(OutcomeTable, NeedsNoAxes) {
+  const std::vector<StudyRow> rows = {Row("stop", "imm", "goal"), Row("turn", "imm", "timeout")};
+  EXPECT_EQ(OutcomeTable(rows, "", ""),
+            "|  | episodes |\n|---|---|\n| all | 1/2 |\n| timeout | 1 |\n");
+  EXPECT_EQ(OutcomeTable(rows, "behaviour", ""),
+            "| behaviour | episodes |\n|---|---|\n| stop | 1/1 |\n| turn | 0/1 |\n"
+            "| all | 1/2 |\n| timeout | 1 |\n");
+}
+
+TEST(StudyCsv, HoldsWhatWasDrawnAndHowToRunItAgain) {
+  std::vector<StudyRow> rows = {Row("stop", "imm", "goal"), Row("turn", "imm", "failed")};
+  rows[0].drawn = {{"speed_factor", 0.1}};
+  rows[0].identity = {"s", "m", "b", ""};
+  rows[0].trace = "traces/x.h5";
+  rows[0].command = "sidestep run a --seed 1";
+  const std::string csv = StudyCsv(rows);
+  EXPECT_THAT(csv, HasSubstr("behaviour,predictor,drawn.speed_factor,outcome,error,"));
+  EXPECT_THAT(csv, HasSubstr(",run,trace,command\nstop,imm,0.10000000000000001,goal,,"));
+  EXPECT_THAT(csv,
+              HasSubstr("," + RunId(rows[0].identity) + ",traces/x.h5,sidestep run a --seed 1\n"));
+  EXPECT_THAT(csv, HasSubstr("\nturn,imm,,failed,,"));
+  EXPECT_THAT(csv, ::testing::EndsWith(",,,\n"));
+}
+
 TEST(StudyCsv, HoldsEveryRowAlsoThoseThatFailed) {
   std::vector<StudyRow> rows = {Row("stop", "two_frame", "goal"),
                                 Row("stop", "two_frame", "failed")};
@@ -66,7 +90,10 @@ TEST(StudyEpisode, ThatThrowsIsARowThatSaysWhy) {
                                  const robot::RobotModel&) -> EpisodeWorld {
     throw std::runtime_error("no world");
   };
-  const StudyRow row = RunStudyEpisode(scenario, RobotOf(scenario), broken, {{"seed", "1"}});
+  const StudyEpisode episode =
+      RunStudyEpisode(scenario, RobotOf(scenario), broken, {{"seed", "1"}});
+  const StudyRow& row = episode.row;
+  EXPECT_FALSE(episode.recording);
   EXPECT_EQ(row.outcome, "failed");
   EXPECT_EQ(row.error, "no world");
   EXPECT_EQ(row.factors.at("seed"), "1");

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -91,6 +92,15 @@ INSTANTIATE_TEST_SUITE_P(
                 {"study", "hsr_walkway", "--episodes", "2", "--set", "seed=9", "--down", "seed",
                  "--across", "seed"},
                 {"--set seed: is what --episodes varies"}},
+        Mistake{"StudyOfSeedsThatChangeNothing",
+                {"study", "hsr_walkway", "--episodes", "2"},
+                {"--episodes: a seed changes nothing in this scenario"}},
+        Mistake{"StudyOfAFactorThatIsNone",
+                {"study", "hsr_walkway", "--speed", "1,2", "--down", "pace"},
+                {"--down: 'pace' is no factor of this study (there are: speed_m_s)"}},
+        Mistake{"StudyOfKnowledgeTwice",
+                {"study", "hsr_walkway", "--set", "knowledge=static", "--knowledge", "prediction"},
+                {"--set knowledge: is what --knowledge varies"}},
         Mistake{"LatencyBeyondHorizon",
                 {"run", "hsr_walkway", "--latency-ms", "4000"},
                 {"--latency-ms: must not exceed the horizon"}},
@@ -218,45 +228,155 @@ TEST(Audit, TakesSettingsAndTellsOfNoErrorWhereThereIsNone) {
   EXPECT_THAT(finished.out, ::testing::Not(HasSubstr("inf")));
 }
 
+std::string TextOf(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// A study whose episodes take a moment: no optimiser, and short.
+Finished QuickStudy(const std::filesystem::path& out, std::vector<std::string> further,
+                    const std::vector<std::string>& environment = {}) {
+  std::vector<std::string> arguments = {
+      "study", "walkway_behaviours",   "--set", "planner.name=straight_line",
+      "--set", "horizon.duration_s=1", "--out", out.string()};
+  arguments.insert(arguments.end(), further.begin(), further.end());
+  return Sidestep(arguments, environment);
+}
+
 TEST(Study, ThatWasInterruptedGoesOnWhereItWas) {
   const TemporaryFolder folder;
   const auto study = [&](const std::string& episodes, const std::string& out, bool resume) {
-    std::vector<std::string> arguments = {"study",       "hsr_walkway",
-                                          "--set",       "planner.name=straight_line",
-                                          "--set",       "horizon.duration_s=1",
-                                          "--knowledge", "static,prediction",
-                                          "--episodes",  episodes,
-                                          "--down",      "knowledge",
-                                          "--across",    "seed",
-                                          "--out",       (folder.path() / out).string()};
-    if (resume) arguments.push_back("--resume");
-    const Finished finished = Sidestep(arguments);
+    std::vector<std::string> further = {
+        "--set", "behaviour=stop", "--knowledge", "static,prediction", "--episodes", episodes};
+    if (resume) further.push_back("--resume");
+    const Finished finished = QuickStudy(folder.path() / out, further);
     EXPECT_EQ(finished.exit_code, 0) << finished.err;
-  };
-  const auto text = [&](const std::string& file) {
-    std::ifstream stream(folder.path() / file);
-    return std::string(std::istreambuf_iterator<char>(stream), {});
   };
   study("2", "whole", false);
   study("1", "parts", false);
-  const std::string first = text("parts/study.jsonl");
+  const std::string first = TextOf(folder.path() / "parts/study.jsonl");
   std::filesystem::resize_file(folder.path() / "parts/study.jsonl", first.size() - 5);
   study("2", "parts", true);
-  EXPECT_EQ(text("parts/study.csv"), text("whole/study.csv"));
+  EXPECT_EQ(TextOf(folder.path() / "parts/study.csv"), TextOf(folder.path() / "whole/study.csv"));
   // What was there has not been run again: its lines stand where they stood.
   const std::string kept = first.substr(0, first.find('\n', first.find('\n') + 1));
-  EXPECT_THAT(text("parts/study.jsonl"), StartsWith(kept));
+  EXPECT_THAT(TextOf(folder.path() / "parts/study.jsonl"), StartsWith(kept));
 
-  const Finished again =
-      Sidestep({"study", "hsr_walkway", "--episodes", "2", "--down", "seed", "--across", "seed",
-                "--out", (folder.path() / "parts").string()});
+  const Finished again = QuickStudy(folder.path() / "parts", {});
   EXPECT_EQ(again.exit_code, 2);
-  EXPECT_THAT(again.err, HasSubstr("parts' holds a study: go on with it by --resume"));
-  const Finished other = Sidestep({"study", "hsr_walkway", "--knowledge", "static", "--episodes",
-                                   "2", "--down", "knowledge", "--across", "seed", "--resume",
-                                   "--out", (folder.path() / "parts").string()});
-  EXPECT_EQ(other.exit_code, 2);
-  EXPECT_THAT(other.err, HasSubstr("parts/study.jsonl: is of a study with another scenario"));
+  EXPECT_THAT(again.err, HasSubstr("parts/study.jsonl: holds a study: go on with it by --resume"));
+}
+
+TEST(Study, GoesOnAfterAChangedCommentButNotAfterAChangedRobotOrScenario) {
+  namespace fs = std::filesystem;
+  const TemporaryFolder folder;
+  const fs::path data = folder.path() / "data";
+  for (const char* const part : {"models", "scenarios"}) {
+    fs::create_directories(data);
+    fs::copy(fs::path(SIDESTEP_SOURCE_DIR) / part, data / part, fs::copy_options::recursive);
+  }
+  const auto append = [&](const char* file, const char* text) {
+    std::ofstream(data / file, std::ios::app) << text;
+  };
+  const auto study = [&](bool resume) {
+    std::vector<std::string> further = {"--set", "behaviour=stop"};
+    if (resume) further.push_back("--resume");
+    return QuickStudy(folder.path() / "out", further, {"SIDESTEP_DATA_DIR=" + data.string()});
+  };
+  EXPECT_EQ(study(false).exit_code, 0);
+  const std::string log = TextOf(folder.path() / "out/study.jsonl");
+  append("scenarios/walkway_behaviours.yaml", "# another comment\n");
+  EXPECT_EQ(study(true).exit_code, 0);
+  EXPECT_EQ(TextOf(folder.path() / "out/study.jsonl"), log);
+
+  append("models/panda/robot.yaml", "# another robot, for all we know\n");
+  const Finished robot = study(true);
+  EXPECT_EQ(robot.exit_code, 2);
+  EXPECT_THAT(robot.err, HasSubstr("out/study.jsonl: holds rows of another robot"));
+
+  append("scenarios/walkway_behaviours.yaml", "predictor: imm\n");
+  const Finished scenario = study(true);
+  EXPECT_EQ(scenario.exit_code, 2);
+  EXPECT_THAT(scenario.err, HasSubstr("out/study.jsonl: holds rows of another scenario"));
+}
+
+TEST(Study, KeepsTracesAndSaysWhatRunsAnEpisodeAgainToTheBit) {
+  namespace fs = std::filesystem;
+  const TemporaryFolder folder;
+  const Finished finished =
+      QuickStudy(folder.path() / "study", {"--set", "behaviour=random_walk", "--knowledge",
+                                           "static", "--episodes", "2", "--traces", "all"});
+  EXPECT_EQ(finished.exit_code, 0) << finished.err;
+  std::istringstream lines(TextOf(folder.path() / "study/study.csv"));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_THAT(line, AllOf(HasSubstr("drawn.delay_s,drawn.speed_factor"),
+                          ::testing::EndsWith(",run,trace,command")));
+  int num_rows = 0;
+  std::string last_trace;
+  while (std::getline(lines, line)) {
+    const std::size_t at = line.find("traces/");
+    ASSERT_NE(at, std::string::npos) << line;
+    const std::size_t comma = line.find(',', at);
+    const std::string trace = TextOf(folder.path() / "study" / line.substr(at, comma - at));
+    const std::string command = line.substr(comma + 1);
+    ASSERT_THAT(command, StartsWith("sidestep run walkway_behaviours "));
+    const fs::path again = folder.path() / ("again" + std::to_string(++num_rows));
+    const Finished run = RunProgram(
+        {"/bin/sh", "-c", SIDESTEP_PROGRAM + command.substr(8) + " --out " + again.string()});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_TRUE(TextOf(again / "trace.h5") == trace) << command;
+    EXPECT_NE(trace, last_trace);
+    last_trace = trace;
+  }
+  EXPECT_EQ(num_rows, 2);
+}
+
+TEST(Study, MakesTracesOfFailuresAfterwards) {
+  const TemporaryFolder folder;
+  const auto traces = [&] {
+    std::error_code error;
+    return std::distance(std::filesystem::directory_iterator(folder.path() / "traces", error), {});
+  };
+  std::vector<std::string> further = {"--set", "behaviour=stop", "--episodes", "2"};
+  EXPECT_EQ(QuickStudy(folder.path(), further).exit_code, 0);
+  EXPECT_EQ(traces(), 0);
+  const std::string log = TextOf(folder.path() / "study.jsonl");
+  further.insert(further.end(), {"--resume", "--traces", "failures"});
+  const Finished finished = QuickStudy(folder.path(), further);
+  EXPECT_EQ(finished.exit_code, 0);
+  const std::string csv = TextOf(folder.path() / "study.csv");
+  std::ptrdiff_t failures = 0;
+  for (std::size_t at = 0; (at = csv.find(",traces/", at)) != std::string::npos; ++at) ++failures;
+  EXPECT_EQ(traces(), failures);
+  EXPECT_EQ(TextOf(folder.path() / "study.jsonl"), log);
+}
+
+TEST(Study, MakesARowOfACombinationThatIsRefusedAndGoesOn) {
+  const TemporaryFolder folder;
+  const Finished finished =
+      QuickStudy(folder.path(), {"--set", "behaviour=speed_up_2", "--speed", "1,90"});
+  EXPECT_EQ(finished.exit_code, 1);
+  const std::string csv = TextOf(folder.path() / "study.csv");
+  EXPECT_THAT(csv, HasSubstr("failed,--speed: is above the max_speed_m_s of 'hsr'"));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
+  EXPECT_THAT(finished.out, HasSubstr("| speed_m_s | episodes |"));
+}
+
+TEST(Compare, TellsRunsApartByFolderAndByWhatDiffers) {
+  const TemporaryFolder folder;
+  std::vector<std::string> compare = {"compare"};
+  for (const char* const epsilon : {"0.1", "0.15"}) {
+    compare.push_back((folder.path() / epsilon).string());
+    const Finished run =
+        Sidestep({"run", "hsr_walkway", "--set", "planner.name=straight_line", "--set",
+                  "horizon.duration_s=1", "--epsilon", epsilon, "--out", compare.back()});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+  }
+  const Finished finished = Sidestep(compare);
+  EXPECT_EQ(finished.exit_code, 0);
+  EXPECT_THAT(finished.out, AllOf(HasSubstr("epsilon_m"), HasSubstr(compare[1]),
+                                  HasSubstr("  0.15  "), ::testing::Not(HasSubstr("seed"))));
 }
 
 TEST(List, ShowsWhatCanBeNamed) {

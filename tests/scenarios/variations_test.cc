@@ -84,7 +84,7 @@ TEST(Variations, AreWrittenAsWhatTheyCameTo) {
 TEST(Variations, OfAnObstacleBeyondItsHighestSpeedCanBeReadBack) {
   const Scenario scenario = Load("walkway_behaviours", {{"behaviour", "speed_up_2"},
                                                         {"variations", "{speed_factor: [5, 6]}"}});
-  EXPECT_GT(SpeedOf(scenario.moving_obstacles[0]), 2.5);
+  EXPECT_GT(SpeedOf(scenario.moving_obstacles[0]), 2.5);  // the file's max_speed_m_s
   const Scenario again = ParseScenario(ToYaml(scenario), "written.yaml");
   EXPECT_EQ(SpeedOf(again.moving_obstacles[0]), SpeedOf(scenario.moving_obstacles[0]));
 }

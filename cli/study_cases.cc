@@ -1,0 +1,159 @@
+#include "sidestep/cli/study_cases.h"
+
+#include <algorithm>
+#include <set>
+
+#include "sidestep/cli/shell_quote.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/scenarios/scenario.h"
+#include "sidestep/scenarios/yaml_text.h"
+#include "sidestep/sdf/prediction/registry.h"
+
+namespace sidestep::cli {
+namespace {
+
+constexpr const char* kSpeed = "speed_m_s";
+constexpr const char* kSeed = "seed";
+
+// Every combination of `cases` with the values of one more factor.
+std::vector<Factors> Cross(const std::vector<Factors>& cases, const std::string& factor,
+                           const std::vector<std::string>& values) {
+  if (values.empty()) return cases;
+  std::set<std::string> seen;
+  for (const std::string& value : values) {
+    if (!seen.insert(value).second) throw InputError(factor, "'" + value + "' is given twice");
+  }
+  std::vector<Factors> crossed;
+  for (const Factors& one : cases) {
+    for (const std::string& value : values) {
+      crossed.push_back(one);
+      crossed.back()[factor] = value;
+    }
+  }
+  return crossed;
+}
+
+void CheckWords(const char* flag, const std::vector<std::string>& words,
+                const std::vector<std::string>& known) {
+  for (const std::string& word : words) {
+    if (std::find(known.begin(), known.end(), word) != known.end()) continue;
+    std::string list;
+    for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+    throw InputError(flag, "must be one of " + list + ", is '" + word + "'");
+  }
+}
+
+// The values of a factor that a flag lists and that a setting may fix instead.
+std::vector<std::string> ValuesOf(const std::string& factor, const char* flag,
+                                  const std::vector<std::string>& listed,
+                                  scenarios::Settings& settings) {
+  const auto fixed = settings.find(factor);
+  if (fixed == settings.end()) return listed;
+  if (!listed.empty())
+    throw InputError("--set " + factor, std::string("is what ") + flag + " varies");
+  return {settings.extract(fixed).mapped()};
+}
+
+}  // namespace
+
+std::vector<Factors> StudyCases(const StudySpace& space, const DataPaths& paths) {
+  scenarios::Settings settings = ParseSettings(space.settings);
+  if (settings.count(kSpeed) != 0) {
+    throw InputError(std::string("--set ") + kSpeed, "is what --speed varies");
+  }
+  std::vector<std::string> speeds, seeds;
+  for (const double speed : space.speeds) speeds.push_back(scenarios::Number(speed));
+  for (int seed = 1; seed <= space.episodes; ++seed) seeds.push_back(std::to_string(seed));
+  const auto& asked = space.knowledge;
+  if (std::find(asked.begin(), asked.end(), kSearch) != asked.end()) {
+    throw InputError("--knowledge", "'search' is asked for by --search");
+  }
+  CheckWords("--knowledge", asked, KnowledgeWords());
+  CheckWords("--predictor", space.predictors, sdf::PredictorNames());
+  std::vector<std::string> knowledge = ValuesOf("knowledge", "--knowledge", asked, settings);
+  if (space.search > 0) knowledge.push_back(kSearch);
+  const std::vector<std::string> predictors =
+      ValuesOf("predictor", "--predictor", space.predictors, settings);
+  seeds = ValuesOf(kSeed, "--episodes", seeds, settings);
+
+  std::vector<Factors> cases = {{}};
+  for (const auto& [choice, values] :
+       scenarios::ScenarioChoices(FindScenario(space.scenario, paths))) {
+    if (settings.count(choice) == 0) cases = Cross(cases, choice, values);
+  }
+  for (const auto& [key, value] : settings) cases = Cross(cases, key, {value});
+  cases = Cross(cases, kSpeed, speeds);
+  cases = Cross(cases, "knowledge", knowledge);
+  cases = Cross(cases, "predictor", predictors);
+  return Cross(cases, kSeed, seeds);
+}
+
+bool IsSearch(const Factors& factors) {
+  const auto knowledge = factors.find("knowledge");
+  return knowledge != factors.end() && knowledge->second == kSearch;
+}
+
+Problem LoadCase(const std::string& scenario, const Factors& factors, const DataPaths& paths) {
+  Overrides overrides;
+  for (const auto& [factor, value] : factors) {
+    if (factor == kSpeed) {
+      overrides.speed_m_s = std::stod(value);
+    } else if (factor == "knowledge") {
+      if (value != kSearch) overrides.knowledge = value;
+    } else if (factor == "predictor") {
+      overrides.predictor = value;
+    } else {
+      overrides.settings[factor] = value;
+    }
+  }
+  return LoadProblem(scenario, overrides, paths);
+}
+
+std::string RunCommandOf(const std::string& scenario, const Factors& factors) {
+  if (IsSearch(factors)) return "";
+  std::string command = "sidestep run " + ShellQuoted(scenario);
+  for (const auto& [factor, value] : factors) {
+    if (factor == kSpeed) {
+      command += " --speed " + ShellQuoted(value);
+    } else if (factor == "knowledge" || factor == "predictor" || factor == kSeed) {
+      command += " --" + factor + " " + ShellQuoted(value);
+    } else {
+      command += " --set " + ShellQuoted(factor + "=" + value);
+    }
+  }
+  return command;
+}
+
+TableAxes ChooseAxes(const std::vector<Factors>& cases, TableAxes axes) {
+  std::vector<std::string> varying;
+  std::string known;
+  for (const auto& entry : cases.front()) {
+    const std::string& factor = entry.first;
+    known += (known.empty() ? "" : ", ") + factor;
+    const bool varies = std::any_of(cases.begin(), cases.end(), [&](const Factors& one) {
+      return one.at(factor) != entry.second;
+    });
+    const bool is_taken = factor == axes.down || factor == axes.across || factor == kSeed;
+    if (varies && !is_taken) varying.push_back(factor);
+  }
+  const auto check = [&](const char* flag, const std::string& factor) {
+    if (factor.empty() || cases.front().count(factor) != 0) return;
+    throw InputError(flag, "'" + factor + "' is no factor of this study" +
+                               (known.empty() ? "" : " (there are: " + known + ")"));
+  };
+  check("--down", axes.down);
+  check("--across", axes.across);
+  const bool one_goes_down = axes.down.empty() && varying.size() == 1;
+  if (axes.across.empty() && !varying.empty() && !one_goes_down) {
+    for (const std::string& factor :
+         {std::string("knowledge"), std::string("predictor"), varying.back()}) {
+      if (std::erase(varying, factor) == 0) continue;
+      axes.across = factor;
+      break;
+    }
+  }
+  if (axes.down.empty() && !varying.empty()) axes.down = varying.front();
+  return axes;
+}
+
+}  // namespace sidestep::cli

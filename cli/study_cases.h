@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sidestep/bench/study.h"
+#include "sidestep/cli/data_paths.h"
+#include "sidestep/cli/wiring.h"
+
+namespace sidestep::cli {
+
+/// Stands in the place of a kind of knowledge: who knows all and has time.
+inline constexpr const char* kSearch = "search";
+
+/// What a study is of, as it is asked for on the command line.
+struct StudySpace {
+  std::string scenario;
+  std::vector<std::string> settings;  ///< KEY=VALUE; each is a factor of one value
+  std::vector<std::string> knowledge, predictors;
+  std::vector<double> speeds;
+  int episodes = 0;  ///< seeds 1, 2, ... ; 0: the scenario's own
+  int search = 0;    ///< guesses; 0: no search
+};
+
+/// Every combination: the file's choices that no setting fixes, and what the flags list.
+/// @throws InputError for a value that is given twice or unknown.
+std::vector<Factors> StudyCases(const StudySpace& space, const DataPaths& paths);
+
+/// @throws InputError if the combination makes no sense.
+Problem LoadCase(const std::string& scenario, const Factors& factors, const DataPaths& paths);
+
+bool IsSearch(const Factors& factors);
+
+/// What runs one case alone, to the same trace; empty for a search.
+std::string RunCommandOf(const std::string& scenario, const Factors& factors);
+
+/// The factors that a table lists down and across.
+struct TableAxes {
+  std::string down, across;  ///< empty: none
+};
+
+/// Fills what is empty, from what varies beside seeds: the kinds of knowledge or else the
+/// predictors go across, and what comes first of the others down.
+/// @throws InputError for a name that is no factor.
+TableAxes ChooseAxes(const std::vector<Factors>& cases, TableAxes asked);
+
+}  // namespace sidestep::cli
