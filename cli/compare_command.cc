@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <set>
 #include <string>
@@ -111,7 +113,8 @@ int Compare(const std::vector<std::string>& folders) {
   }
   PrintTable(lines, num_words);
   for (std::size_t i = num_shown; i < differences.size(); ++i) {
-    Print("{}{}{}", i == num_shown ? "also different: " : ", ", differences[i], i + 1 == differences.size() ? "\n" : "");
+    Print("{}{}{}", i == num_shown ? "also different: " : ", ", differences[i],
+          i + 1 == differences.size() ? "\n" : "");
   }
   return 0;
 }

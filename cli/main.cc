@@ -39,7 +39,8 @@ int Run(int argc, char** argv) {
   line.app.require_subcommand(1);
   line.app.footer(
       "Exit codes: 0 done, whatever the outcome of the run; 1 a gate failed or a run could not be\n"
-      "completed (what there is of it is written); 2 usage, bad input, or results that could not be\n"
+      "completed (what there is of it is written); 2 usage, bad input, or results that could not "
+      "be\n"
       "written.\n"
       "`sidestep COMMAND --help` tells more.\n"
       "Environment: SIDESTEP_DATA_DIR is a folder with models/ and scenarios/, used instead of "

@@ -16,15 +16,16 @@ constexpr const char* kSpeed = "speed_m_s";
 constexpr const char* kSeed = "seed";
 
 // Every combination of `cases` with the values of one more factor.
-std::vector<Factors> Cross(const std::vector<Factors>& cases, const std::string& factor,
-                           const std::vector<std::string>& values) {
+std::vector<bench::Factors> Cross(const std::vector<bench::Factors>& cases,
+                                  const std::string& factor,
+                                  const std::vector<std::string>& values) {
   if (values.empty()) return cases;
   std::set<std::string> seen;
   for (const std::string& value : values) {
     if (!seen.insert(value).second) throw InputError(factor, "'" + value + "' is given twice");
   }
-  std::vector<Factors> crossed;
-  for (const Factors& one : cases) {
+  std::vector<bench::Factors> crossed;
+  for (const bench::Factors& one : cases) {
     for (const std::string& value : values) {
       crossed.push_back(one);
       crossed.back()[factor] = value;
@@ -56,7 +57,7 @@ std::vector<std::string> ValuesOf(const std::string& factor, const char* flag,
 
 }  // namespace
 
-std::vector<Factors> StudyCases(const StudySpace& space, const DataPaths& paths) {
+std::vector<bench::Factors> StudyCases(const StudySpace& space, const DataPaths& paths) {
   scenarios::Settings settings = ParseSettings(space.settings);
   if (settings.count(kSpeed) != 0) {
     throw InputError(std::string("--set ") + kSpeed, "is what --speed varies");
@@ -76,7 +77,7 @@ std::vector<Factors> StudyCases(const StudySpace& space, const DataPaths& paths)
       ValuesOf("predictor", "--predictor", space.predictors, settings);
   seeds = ValuesOf(kSeed, "--episodes", seeds, settings);
 
-  std::vector<Factors> cases = {{}};
+  std::vector<bench::Factors> cases = {{}};
   for (const auto& [choice, values] :
        scenarios::ScenarioChoices(FindScenario(space.scenario, paths))) {
     if (settings.count(choice) == 0) cases = Cross(cases, choice, values);
@@ -88,12 +89,13 @@ std::vector<Factors> StudyCases(const StudySpace& space, const DataPaths& paths)
   return Cross(cases, kSeed, seeds);
 }
 
-bool IsSearch(const Factors& factors) {
+bool IsSearch(const bench::Factors& factors) {
   const auto knowledge = factors.find("knowledge");
   return knowledge != factors.end() && knowledge->second == kSearch;
 }
 
-Problem LoadCase(const std::string& scenario, const Factors& factors, const DataPaths& paths) {
+Problem LoadCase(const std::string& scenario, const bench::Factors& factors,
+                 const DataPaths& paths) {
   Overrides overrides;
   for (const auto& [factor, value] : factors) {
     if (factor == kSpeed) {
@@ -109,7 +111,7 @@ Problem LoadCase(const std::string& scenario, const Factors& factors, const Data
   return LoadProblem(scenario, overrides, paths);
 }
 
-std::string RunCommandOf(const std::string& scenario, const Factors& factors) {
+std::string RunCommandOf(const std::string& scenario, const bench::Factors& factors) {
   if (IsSearch(factors)) return "";
   std::string command = "sidestep run " + ShellQuoted(scenario);
   for (const auto& [factor, value] : factors) {
@@ -124,13 +126,13 @@ std::string RunCommandOf(const std::string& scenario, const Factors& factors) {
   return command;
 }
 
-TableAxes ChooseAxes(const std::vector<Factors>& cases, TableAxes axes) {
+TableAxes ChooseAxes(const std::vector<bench::Factors>& cases, TableAxes axes) {
   std::vector<std::string> varying;
   std::string known;
   for (const auto& entry : cases.front()) {
     const std::string& factor = entry.first;
     known += (known.empty() ? "" : ", ") + factor;
-    const bool varies = std::any_of(cases.begin(), cases.end(), [&](const Factors& one) {
+    const bool varies = std::any_of(cases.begin(), cases.end(), [&](const bench::Factors& one) {
       return one.at(factor) != entry.second;
     });
     const bool is_taken = factor == axes.down || factor == axes.across || factor == kSeed;

@@ -24,15 +24,16 @@ struct StudySpace {
 
 /// Every combination: the file's choices that no setting fixes, and what the flags list.
 /// @throws InputError for a value that is given twice or unknown.
-std::vector<Factors> StudyCases(const StudySpace& space, const DataPaths& paths);
+std::vector<bench::Factors> StudyCases(const StudySpace& space, const DataPaths& paths);
 
 /// @throws InputError if the combination makes no sense.
-Problem LoadCase(const std::string& scenario, const Factors& factors, const DataPaths& paths);
+Problem LoadCase(const std::string& scenario, const bench::Factors& factors,
+                 const DataPaths& paths);
 
-bool IsSearch(const Factors& factors);
+bool IsSearch(const bench::Factors& factors);
 
 /// What runs one case alone, to the same trace; empty for a search.
-std::string RunCommandOf(const std::string& scenario, const Factors& factors);
+std::string RunCommandOf(const std::string& scenario, const bench::Factors& factors);
 
 /// The factors that a table lists down and across.
 struct TableAxes {
@@ -42,6 +43,6 @@ struct TableAxes {
 /// Fills what is empty, from what varies beside seeds: the kinds of knowledge or else the
 /// predictors go across, and what comes first of the others down.
 /// @throws InputError for a name that is no factor.
-TableAxes ChooseAxes(const std::vector<Factors>& cases, TableAxes asked);
+TableAxes ChooseAxes(const std::vector<bench::Factors>& cases, TableAxes asked);
 
 }  // namespace sidestep::cli

@@ -24,6 +24,7 @@
 #include "sidestep/cli/wiring.h"
 #include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
+#include "sidestep/record/recording_file.h"
 #include "sidestep/scenarios/variations.h"
 
 namespace sidestep::cli {
@@ -69,10 +70,11 @@ class Study {
   }
 
  private:
-  Problem Load(const Factors& factors) const {
+  Problem Load(const bench::Factors& factors) const {
     return LoadCase(options_.space.scenario, factors, paths_);
   }
-  bench::RunIdentity IdentityOf(const Factors& factors, const scenarios::Scenario& scenario) const {
+  bench::RunIdentity IdentityOf(const bench::Factors& factors,
+                                const scenarios::Scenario& scenario) const {
     bench::RunIdentity identity = Identify(scenario, paths_);
     if (IsSearch(factors)) identity.method = "search " + std::to_string(options_.space.search);
     return identity;
@@ -87,7 +89,7 @@ class Study {
   void CheckBeforeTheWork() const {
     std::exception_ptr first_error;
     bool any_is_sound = false, seed_matters = false;
-    for (const Factors& one : cases_) {
+    for (const bench::Factors& one : cases_) {
       const auto seed = one.find("seed");
       if (options_.space.episodes > 0 && seed->second != "1") continue;
       try {
@@ -141,7 +143,7 @@ class Study {
   }
 
   // A combination that is refused is a row too.
-  bench::StudyRow RunCase(const Factors& factors) const {
+  bench::StudyRow RunCase(const bench::Factors& factors) const {
     std::optional<Problem> problem;
     try {
       problem = Load(factors);
@@ -189,7 +191,7 @@ class Study {
 
   const StudyOptions& options_;
   DataPaths paths_;
-  std::vector<Factors> cases_;
+  std::vector<bench::Factors> cases_;
   std::string out_;
 };
 

@@ -10,8 +10,6 @@ void Fingerprint::Add(std::string_view part) {
   for (const char c : part) AddByte(static_cast<unsigned char>(c));
 }
 
-std::string Fingerprint::Text() const {
-  return fmt::format("{:016x}", hash_);
-}
+std::string Fingerprint::Text() const { return fmt::format("{:016x}", hash_); }
 
 }  // namespace sidestep

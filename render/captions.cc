@@ -55,9 +55,10 @@ Color ColorOf(Mood mood) {
 
 Status StatusAt(const record::Recording& recording, EpisodeTime t) {
   const auto outcome = recording.header.find("outcome");
-  const bool is_cut_off =
-      outcome != recording.header.end() && outcome->second == "aborted" && t >= record::EndOf(recording);
-  const std::string cut_off = is_cut_off ? "ABORTED at " + Seconds(record::EndOf(recording).seconds()) : "";
+  const bool is_cut_off = outcome != recording.header.end() && outcome->second == "aborted" &&
+                          t >= record::EndOf(recording);
+  const std::string cut_off =
+      is_cut_off ? "ABORTED at " + Seconds(record::EndOf(recording).seconds()) : "";
   const std::optional<record::Touch> touch = record::FirstTouch(recording, t);
   if (touch) {
     return {"CONTACT at " + Seconds(touch->t.seconds()) +

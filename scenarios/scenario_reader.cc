@@ -11,8 +11,8 @@
 #include "sidestep/core/yaml_reader.h"
 #include "sidestep/scenarios/scenario.h"
 #include "sidestep/scenarios/track_file.h"
-#include "sidestep/scenarios/yaml_text.h"
 #include "sidestep/scenarios/variations.h"
+#include "sidestep/scenarios/yaml_text.h"
 
 namespace sidestep::scenarios {
 namespace {

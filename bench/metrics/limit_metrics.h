@@ -11,8 +11,8 @@ namespace sidestep::bench {
 /// Of the plans that were given to the robot, each from the support state at or before the moment
 /// when it takes effect. A plan is a chain of cubics: its velocity and acceleration are exact. Its
 /// jerk is that within the cubics; at a support state the acceleration jumps, no jerk is defined,
-/// and it is the tracker that rounds the corner (CommandedJerkUse). Torque rates are not told: a plan
-/// holds no torques, and this module knows no masses.
+/// and it is the tracker that rounds the corner (CommandedJerkUse). Torque rates are not told: a
+/// plan holds no torques, and this module knows no masses.
 double PlannedVelocityUse(const record::Recording& recording);
 double PlannedAccelerationUse(const record::Recording& recording);
 double PlannedJerkUse(const record::Recording& recording);

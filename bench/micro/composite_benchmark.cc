@@ -31,7 +31,7 @@ std::shared_ptr<const sdf::SdfGrid> RoomField(int n) {
       sdf::FastDistanceTransform().Compute(FurnishedRoom(n, {})));
 }
 
-sdf::CompositeField CubesInARoom(int num_objects, const sdf::StaticSolids& exact = {}) {
+sdf::CompositeField CubesInARoom(int num_objects, const StaticSolids& exact = {}) {
   constexpr int kCells = 96;
   const double cell_m = kRoom_m / kCells;
   OccupancyGrid cube({Eigen::Vector3d::Constant(-2 * cell_m), cell_m, {5, 5, 5}});
@@ -75,7 +75,7 @@ void CountQueries(Eigen::Index num_points, benchmark::State& state) {
 
 StaticSolids Floor() { return {{}, {{Eigen::Vector3d::UnitZ(), 0.1}}}; }
 
-void Lazy(benchmark::State& state, int num_arms, const sdf::StaticSolids& exact) {
+void Lazy(benchmark::State& state, int num_arms, const StaticSolids& exact) {
   const sdf::CompositeField composite = CubesInARoom(static_cast<int>(state.range(0)), exact);
   const sdf::PlacedComposite field = composite.At(EpisodeTime(0));
   const Eigen::Matrix3Xd p_WQ = ArmPoints(num_arms).transpose();
@@ -87,7 +87,7 @@ void Lazy(benchmark::State& state, int num_arms, const sdf::StaticSolids& exact)
   CountQueries(p_WQ.cols(), state);
 }
 
-void LazyBatched(benchmark::State& state, int num_arms, const sdf::StaticSolids& exact) {
+void LazyBatched(benchmark::State& state, int num_arms, const StaticSolids& exact) {
   const sdf::CompositeField composite = CubesInARoom(static_cast<int>(state.range(0)), exact);
   const sdf::PlacedComposite field = composite.At(EpisodeTime(0));
   const sdf::PointColumns p_WQ = ArmPoints(num_arms);

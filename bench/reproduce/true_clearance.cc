@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kSamplesAStep = 20;
 
-PlacedShape sdf::Placed(const PublishedBox& box) {
+PlacedShape Placed(const PublishedBox& box) {
   return {Box{box.size_m}, Pose::Translation(box.center_m)};
 }
 
@@ -26,11 +26,11 @@ TrueClearance MeasureTrueClearance(const OpenLoopExperiment& experiment,
   TrueClearance least{kFar, kFar, kFar};
   const std::vector<int> guarded = planner::GuardedSpheres(robot);
   StaticSolids still;  // there is no floor
-  for (const PublishedBox& box : experiment.static_boxes) still.shapes.push_back(sdf::Placed(box));
+  for (const PublishedBox& box : experiment.static_boxes) still.shapes.push_back(Placed(box));
   const sdf::ShapeField static_world(still);
   const sdf::ShapeField moving_world(
       {}, {{Box{experiment.moving_box.size_m}, [&](EpisodeTime t) {
-              return sdf::Placed(experiment.MovingBoxAtTime(speed_m_s, t.seconds())).X_WO;
+              return Placed(experiment.MovingBoxAtTime(speed_m_s, t.seconds())).X_WO;
             }}});
   const int num_samples = (trajectory.num_states() - 1) * kSamplesAStep + 1;
   for (int i = 0; i < num_samples; ++i) {

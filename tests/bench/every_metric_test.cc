@@ -167,10 +167,9 @@ TEST(Metrics, OfLimitsThatNobodyAskedForAreNotANumber) {
                                  &recording.limits.jerk_max, &recording.limits.torque_rate_max}) {
     limit->setConstant(std::numeric_limits<double>::infinity());
   }
-  for (const char* name :
-       {"planned_velocity_use", "planned_acceleration_use", "planned_jerk_use",
-        "commanded_velocity_use", "commanded_acceleration_use", "commanded_jerk_use",
-        "commanded_torque_rate_use"}) {
+  for (const char* name : {"planned_velocity_use", "planned_acceleration_use", "planned_jerk_use",
+                           "commanded_velocity_use", "commanded_acceleration_use",
+                           "commanded_jerk_use", "commanded_torque_rate_use"}) {
     EXPECT_TRUE(std::isnan(Find(name).compute(recording))) << name;
   }
 }

@@ -63,18 +63,19 @@ TEST_F(ResultFile, OfAnAbortedRunIsReadBackThoughItHadNoPlanningCycle) {
   result.outcome = Outcome::kAborted;
   result.reason = "the robot's \"power\" failed";
   result.times["cycle"].clear();
-  WriteFile(path_, ResultJson(result, SomeScenario(), {}));
+  WriteFile(path_, ResultJson(result, SomeScenario(), kIdentity, {}));
   const ResultSummary summary = ReadResult(path_);
   EXPECT_EQ(summary.outcome, Outcome::kAborted);
   EXPECT_TRUE(std::isnan(summary.cycle_p50_ms));
-  const auto json = nlohmann::json::parse(ResultJson(result, SomeScenario(), {}));
+  const auto json = nlohmann::json::parse(ResultJson(result, SomeScenario(), kIdentity, {}));
   EXPECT_EQ(json["reason"], result.reason);
   EXPECT_TRUE(
-      nlohmann::json::parse(ResultJson(SomeResult(), SomeScenario(), {}))["reason"].is_null());
+      nlohmann::json::parse(ResultJson(SomeResult(), SomeScenario(), kIdentity, {}))["reason"]
+          .is_null());
 }
 
 TEST_F(ResultFile, OfAnUnknownOutcomeIsRefused) {
-  auto json = nlohmann::json::parse(ResultJson(SomeResult(), SomeScenario(), {}));
+  auto json = nlohmann::json::parse(ResultJson(SomeResult(), SomeScenario(), kIdentity, {}));
   json["outcome"] = "success";
   WriteFile(path_, json.dump());
   EXPECT_EQ(Complaint(), path_ + ": is not a whole result: no outcome is 'success'");
@@ -127,7 +128,7 @@ TEST_F(ResultFile, WritesCountsAsWholeNumbers) {
 TEST_F(ResultFile, WritesOutBytesThatJsonCannotHold) {
   scenarios::Scenario scenario = SomeScenario();
   scenario.name = "caf\xE9";
-  const std::string text = ResultJson(SomeResult(), scenario, {{"k\xFF", "v\xFE"}});
+  const std::string text = ResultJson(SomeResult(), scenario, kIdentity, {{"k\xFF", "v\xFE"}});
   const auto json = nlohmann::json::parse(text);
   EXPECT_EQ(json["scenario"], "caf\\xE9");
   EXPECT_EQ(json["versions"]["k\\xFF"], "v\\xFE");

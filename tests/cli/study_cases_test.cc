@@ -8,11 +8,11 @@
 namespace sidestep::cli {
 namespace {
 
-std::vector<Factors> Of(const std::vector<std::pair<std::string, int>>& counts) {
-  std::vector<Factors> cases = {{}};
+std::vector<bench::Factors> Of(const std::vector<std::pair<std::string, int>>& counts) {
+  std::vector<bench::Factors> cases = {{}};
   for (const auto& [factor, count] : counts) {
-    std::vector<Factors> crossed;
-    for (const Factors& one : cases) {
+    std::vector<bench::Factors> crossed;
+    for (const bench::Factors& one : cases) {
       for (int i = 0; i < count; ++i) {
         crossed.push_back(one);
         crossed.back()[factor] = std::to_string(i);

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "sidestep/record/recording.h"
+#include "sidestep/record/recording_file.h"
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 

@@ -21,7 +21,7 @@ StaticSolids Still() {
           {{{0, 0, 1}, -0.1}, {{0.6, 0, 0.8}, -0.7}}};
 }
 Eigen::Vector3d BallCenter(EpisodeTime t) { return {-0.2, -0.4, t.seconds()}; }
-ShapeField sim::World(double max_distance_m) {
+ShapeField World(double max_distance_m) {
   return ShapeField(
       Still(), {{Sphere{0.15}, [](EpisodeTime t) { return Pose::Translation(BallCenter(t)); }}},
       max_distance_m);
@@ -40,8 +40,8 @@ Eigen::Vector3d Anywhere(RandomStream& random) {
 }
 
 TEST(ShapeField, IsTheLeastDistanceToEverythingAtThatTime) {
-  const ShapeField unclamped = sim::World(std::numeric_limits<double>::infinity());
-  const ShapeField field = sim::World(kClamp_m);
+  const ShapeField unclamped = World(std::numeric_limits<double>::infinity());
+  const ShapeField field = World(kClamp_m);
   RandomStream random(1, "points");
   int num_clamped = 0;
   for (int n = 0; n < 4000; ++n) {
@@ -62,7 +62,7 @@ TEST(ShapeField, IsTheLeastDistanceToEverythingAtThatTime) {
 }
 
 TEST(ShapeField, HasTheGradientOfItsValue) {
-  const ShapeField field = sim::World(kClamp_m);
+  const ShapeField field = World(kClamp_m);
   RandomStream random(2, "points");
   constexpr double kStep_m = 1e-6;
   int num_smooth = 0;
@@ -83,7 +83,7 @@ TEST(ShapeField, HasTheGradientOfItsValue) {
 }
 
 TEST(ShapeField, AnswersManyPointsAsItAnswersEach) {
-  const ShapeField field = sim::World(kClamp_m);
+  const ShapeField field = World(kClamp_m);
   RandomStream random(3, "points");
   Eigen::Matrix3Xd p_WQ(3, 500);
   for (Eigen::Index s = 0; s < p_WQ.cols(); ++s) p_WQ.col(s) = Anywhere(random);

@@ -100,7 +100,8 @@ TEST(TurningObstacle, IsWhereItWillBeTurnedToUnderFullKnowledge) {
     options.knowledge = sdf::Knowledge::kFullKnowledge;
     options.grid = scenario.grid;
     options.max_distance_m = kClamp_m;
-    options.true_obstacles = [&](EpisodeTime t) { return simulation.truth().ObstaclesAt(t); };
+    options.true_obstacles = {
+        {obstacle.shape, [obstacle](EpisodeTime t) { return PoseAt(obstacle, t); }}};
     const auto model = sdf::MakeWorldModel(options);
     WatchScans(simulation, 0.5, [&](const Scan& scan) { model->Observe(scan); });
     const auto field = model->MakeField();
