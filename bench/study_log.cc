@@ -116,7 +116,7 @@ const StudyRow* StudyLog::Find(const Factors& factors) const {
   return found == rows_.end() ? nullptr : &found->second;
 }
 
-void StudyLog::Append(const StudyRow& row) { Write(JsonLine(ToJson(row))); }
+void StudyLog::Append(const StudyRow& row) { Write(JsonLine(ToJson(row)) + "\n"); }
 
 void StudyLog::Write(const std::string& line) {
   for (std::size_t done = 0; done < line.size();) {

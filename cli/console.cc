@@ -1,8 +1,5 @@
 #include "sidestep/cli/console.h"
 
-#include <sys/poll.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -14,31 +11,22 @@
 namespace sidestep::cli {
 namespace {
 
-void Write(std::string_view text, std::FILE* stream) {
+bool Write(std::string_view text, std::FILE* stream) {
   const std::string escaped = EscapeInvalidUtf8(text);
-  std::fwrite(escaped.data(), 1, escaped.size(), stream);
+  return std::fwrite(escaped.data(), 1, escaped.size(), stream) == escaped.size();
 }
 
-bool ReaderIsGone() {
-  pollfd output = {STDOUT_FILENO, 0, 0};
-  return poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0;
+// The stream keeps no reason of a failure, so it is told where it happens.
+void CheckOutput(bool is_written) {
+  if (is_written || errno == EPIPE) return;
+  throw InputError("standard output", std::string("cannot be written: ") + std::strerror(errno));
 }
 
 }  // namespace
 
-void PrintText(std::string_view text) { Write(text, stdout); }
+void PrintText(std::string_view text) { CheckOutput(Write(text, stdout)); }
 void PrintErrorText(std::string_view text) { Write(text, stderr); }
 
-void FinishOutput() {
-  errno = 0;
-  const bool flushed = std::fflush(stdout) == 0;
-  const int error = errno;
-  if (flushed && std::ferror(stdout) == 0) return;
-  if (error == EPIPE || (flushed && ReaderIsGone())) return;
-  // An earlier failure left its mark on the stream, but not its reason.
-  throw InputError("standard output",
-                   flushed ? "could not take everything"
-                           : std::string("cannot be written: ") + std::strerror(error));
-}
+void FinishOutput() { CheckOutput(std::fflush(stdout) == 0); }
 
 }  // namespace sidestep::cli

@@ -9,6 +9,8 @@ namespace sidestep::cli {
 
 /// Everything that commands say goes through here, so that a terminal gets text: bytes that are not
 /// UTF-8, as the name of a file may hold, are written out (core/utf8.h).
+/// @throws InputError if standard output cannot take it, as on a full disk. That a reader has gone
+/// away, `| head`, is no error.
 void PrintText(std::string_view text);       // standard output
 void PrintErrorText(std::string_view text);  // standard error
 
@@ -21,9 +23,7 @@ void PrintError(fmt::format_string<Values...> format, Values&&... values) {
   PrintErrorText(fmt::format(format, std::forward<Values>(values)...));
 }
 
-/// Call once a command is done: hands on what is still held back.
-/// @throws InputError if standard output could not take everything, as on a full disk. That a
-/// reader has gone away, `| head`, is no error.
+/// Call once a command is done: hands on what is still held back. @throws InputError as PrintText.
 void FinishOutput();
 
 }  // namespace sidestep::cli

@@ -8,12 +8,14 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "sidestep/core/utf8.h"
+
 namespace sidestep {
 namespace {
 
 std::string QuotedJson(const std::string& text) {
   std::string quoted = "\"";
-  for (const char c : text) {
+  for (const char c : EscapeInvalidUtf8(text)) {
     if (c == '"' || c == '\\') quoted += '\\';
     if (static_cast<unsigned char>(c) < 32) {
       quoted += fmt::format("\\u{:04x}", static_cast<unsigned>(c));

@@ -66,7 +66,7 @@ TEST(StudyCsv, HoldsWhatWasDrawnAndHowToRunItAgain) {
   rows[0].command = "sidestep run a --seed 1";
   const std::string csv = StudyCsv(rows);
   EXPECT_THAT(csv, HasSubstr("behaviour,predictor,drawn.speed_factor,outcome,error,"));
-  EXPECT_THAT(csv, HasSubstr(",run,trace,command\nstop,imm,0.10000000000000001,goal,,"));
+  EXPECT_THAT(csv, HasSubstr(",run,trace,command\nstop,imm,0.1,goal,,"));
   EXPECT_THAT(csv,
               HasSubstr("," + RunId(rows[0].identity) + ",traces/x.h5,sidestep run a --seed 1\n"));
   EXPECT_THAT(csv, HasSubstr("\nturn,imm,,failed,,"));

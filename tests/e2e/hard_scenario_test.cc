@@ -116,8 +116,7 @@ TEST_P(HardScenario, IsComparedLikeAnyOther) {
 
 TEST_P(HardScenario, IsARowOfAStudy) {
   const Finished finished =
-      Sidestep({"study", scenario_.string(), "--knowledge", "execute_and_update", "--down",
-                "knowledge", "--across", "knowledge", "--out", out_.string()});
+      Sidestep({"study", scenario_.string(), "--knowledge", "prediction", "--out", out_.string()});
   EXPECT_EQ(finished.exit_code, is_aborted_ ? 1 : 0) << finished.err;
   const std::string csv = Slurp(out_ / "study.csv");
   EXPECT_THAT(csv, HasSubstr("," + expected_.outcome + ","));

@@ -328,6 +328,7 @@ class EverySensor : public ::testing::TestWithParam<std::string> {
     scenarios::Scenario scenario = Scene();
     scenarios::SensorSettings& sensor = scenario.sensor;
     sensor.latency_s = sensor.dropout = 0;
+    sensor.cells = CellRule::kCentre;  // then every point lies in what it is of
     if (sensor.noise) sensor.noise = scenarios::OccupancyNoise{};
     if (sensor.camera) sensor.camera->noise_per_m = 0;
     if (sensor.tags) sensor.tags->across_noise = sensor.tags->along_noise_per_m = 0;

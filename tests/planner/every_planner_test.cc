@@ -135,9 +135,14 @@ TEST_P(EveryPlanner, SaysSoWhenAFreePlanExceedsALimitThatItWasAskedToKeep) {
   request.field = &nothing;
   PlannerSettings slow;
   slow.velocity_scale = 0.2;  // of 2 rad/s, which is 0.8 rad in 2 s
-  const PlanResult plan = MakePlanner(GetParam(), arm_, slow)->Plan(request);
-  EXPECT_EQ(ToString(plan.status), "over_limits");
-  EXPECT_GT(plan.limit_use.velocity, 0.5);
+  const auto planner = MakePlanner(GetParam(), arm_, slow);
+  const PlanResult plan = planner->Plan(request);
+  if (planner->capabilities().reaches_goal) {
+    EXPECT_EQ(ToString(plan.status), "over_limits");
+    EXPECT_GT(plan.limit_use.velocity, 0.5);
+  } else {
+    EXPECT_EQ(plan.status == PlanStatus::kOverLimits, plan.limit_use.velocity > 0.2);
+  }
   slow.velocity_limits = false;
   slow.acceleration_scale = 1;
   EXPECT_EQ(MakePlanner(GetParam(), arm_, slow)->Plan(request).status, PlanStatus::kSolved);

@@ -33,6 +33,7 @@ scenarios::Scenario Turning() {
       {0.2, 0.2, 0.4}, 0.5, 0, false, 0.6, std::numeric_limits<double>::infinity(), 0};
   obstacle.faces_path = true;
   scenario.moving_obstacles = {obstacle};
+  scenario.sensor.cells = CellRule::kCentre;  // cells are counted against the centres
   return scenario;
 }
 
