@@ -13,7 +13,14 @@ namespace {
 
 const std::string kPage = SIDESTEP_SOURCE_DIR "/docs/scenario.md";
 
-std::string Read(const std::string& text) { return ToYaml(ParseScenario(text, "page.yaml")); }
+// Reads it as a file that has a track beside it.
+std::string Read(const std::string& text) {
+  const TemporaryFolder folder;
+  const std::string path = (folder.path() / "page.yaml").string();
+  std::ofstream(path) << text;
+  std::ofstream(folder.path() / "track.csv") << "t,x,y,z\n0,2,0,0.85\n1,2,1,0.85\n";
+  return ToYaml(LoadScenario(path));
+}
 
 TEST(ScenarioPage, TellsEveryKeyAsTheReaderHasIt) {
   for (const std::string& difference : KeyPage(kPage, Read).Differences()) {

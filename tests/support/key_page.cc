@@ -278,7 +278,12 @@ std::vector<std::string> KeyPage::Differences() const {
   Checker checker(path_, known);
   std::set<int> used;  // lines of rows
   for (const auto& [key, places] : known.places()) {
-    const auto covers = [&key = key](const Row& row) { return Covers(row.key, key); };
+    // A row of its own stands before one of several kinds.
+    const bool has_own = std::any_of(rows_.begin(), rows_.end(),
+                                     [&key = key](const Row& row) { return row.key == key; });
+    const auto covers = [&key = key, has_own](const Row& row) {
+      return has_own ? row.key == key : Covers(row.key, key);
+    };
     const auto row = std::find_if(rows_.begin(), rows_.end(), covers);
     if (row == rows_.end()) {
       checker.differences.push_back(path_ + ": has no row for `" + key +

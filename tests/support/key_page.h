@@ -14,10 +14,10 @@ namespace sidestep {
 ///   | key | type | unit | default | bounds | meaning |
 ///
 /// A key is its path in the file: `[]` for an item of a list, `<name>` for a name that is free, `*`
-/// for any of several kinds. In `default`, `required` and a value in backquotes are checked, and
-/// any other text means that the key may be left out. In `bounds`, `> 0`, `>= 0`, `< 1`, `<= 1` and
-/// `0 to 1` are checked, also as one of several parts with semicolons between them; any other text
-/// is for readers.
+/// for any of several kinds that has no row of its own. In `default`, `required` and a value in
+/// backquotes are checked, and any other text means that the key may be left out. In `bounds`, `>
+/// 0`, `>= 0`, `< 1`, `<= 1` and `0 to 1` are checked, also as one of several parts with semicolons
+/// between them; any other text is for readers.
 class KeyPage {
  public:
   struct Row {
