@@ -28,6 +28,19 @@ TEST(ScenarioPage, TellsEveryKeyAsTheReaderHasIt) {
   }
 }
 
+TEST(ScenarioPage, BeginsWithAScenario) {
+  std::ifstream page(kPage);
+  std::string text;
+  for (std::string line; std::getline(page, line);) {
+    if (line.rfind("    ", 0) == 0) {
+      text += line.substr(4) + "\n";
+    } else if (!text.empty()) {
+      break;
+    }
+  }
+  EXPECT_EQ(ParseScenario(text, "mine.yaml").robot, "panda") << text;
+}
+
 // The page with one thing changed, and what the test above must then say.
 TEST(ScenarioPage, IsFoundOutWhereItDiffers) {
   const struct {
@@ -42,6 +55,8 @@ TEST(ScenarioPage, IsFoundOutWhereItDiffers) {
       {"  qc: 1\n", "", "the example at the top of the page lacks planner.qc"},
       {"| `0.95` |", "| `0.9` |", "the default of planner.velocity_scale is not 0.9"},
       {"| `0.95` |", "| required |", "planner.velocity_scale need not be given"},
+      {"| `moving_obstacles[].motion.recorded.speed_m_s` |", "| as of any kind |",
+       "moving_obstacles[].motion.recorded.speed_m_s need not be given"},
       {"| required | 0.001 to 10 |", "| required | 0.001 to 9 |",
        "takes 9.000009 for workspace.cell_m, which is beyond"},
       {"| required | 0.001 to 10 |", "| required | 0.0001 to 10 |",
