@@ -1,9 +1,9 @@
 #include <cstdlib>
 #include <exception>
 #include <string>
-#include <thread>
 
 #include "sidestep/bench/report/gnuplot.h"
+#include "sidestep/bench/task_pool.h"
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/data_paths.h"
@@ -90,7 +90,7 @@ void CheckGnuplot(Report& report) {
 int Diagnose() {
   Report report;
   for (const auto& [part, version] : Versions()) report.Good(part, version);
-  report.Good("processors", std::to_string(std::thread::hardware_concurrency()));
+  report.Good("processors", std::to_string(bench::NumProcessors()));
   CheckData(report);
   CheckGl(report);
   CheckVideo(report);

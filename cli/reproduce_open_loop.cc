@@ -5,7 +5,6 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "sidestep/bench/reproduce/open_loop_experiment.h"
@@ -15,6 +14,7 @@
 #include "sidestep/bench/reproduce/open_loop_study.h"
 #include "sidestep/bench/reproduce/published_columns.h"
 #include "sidestep/bench/reproduce/published_table.h"
+#include "sidestep/bench/task_pool.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/data_paths.h"
 #include "sidestep/cli/number_range.h"
@@ -149,7 +149,7 @@ int Run(const std::string& name, const OpenLoopCommand& command) {
 void AddReproduceOpenLoop(CommandLine& line, CLI::App& reproduce) {
   for (const std::string& name : bench::OpenLoopExperimentNames()) {
     auto options = std::make_shared<OpenLoopCommand>();
-    options->num_jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    options->num_jobs = bench::NumProcessors();
     CLI::App* const command = reproduce.add_subcommand(
         name, "Open loop: a table of colliding states and costs, row for row");
     command->add_option("--published", options->published,

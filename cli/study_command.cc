@@ -8,13 +8,12 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
-#include "sidestep/bench/reproduce/parallel.h"
 #include "sidestep/bench/study.h"
 #include "sidestep/bench/study_log.h"
+#include "sidestep/bench/task_pool.h"
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/number_range.h"
@@ -242,10 +241,7 @@ void AddStudyCommand(CommandLine& line) {
                   "what its folder holds is not run again");
   study->add_option("--out", options->out, "Folder for the results [out/study]");
   study->callback([&line, options] {
-    if (options->jobs == 0) {
-      options->jobs =
-          std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, kMaxJobs);
-    }
+    if (options->jobs == 0) options->jobs = std::min(bench::NumProcessors(), kMaxJobs);
     line.exit_code = Study(*options, FindDataPaths()).Run();
   });
 }

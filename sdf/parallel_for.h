@@ -18,6 +18,9 @@ void RunParallelFor(int num_threads, int count, const ParallelBody& body);
 /// of its own. Which worker gets which index differs from run to run, so what a call computes may
 /// only depend on its index. With one thread it is a plain loop, and nothing is allocated.
 ///
+/// It is for the many short pieces of one field computation, whose threads are kept from call to
+/// call. Whole jobs, which may throw, run in bench/task_pool.
+///
 /// @param body must not throw.
 /// @throws std::invalid_argument if num_threads < 1.
 template <class Body>

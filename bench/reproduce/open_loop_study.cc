@@ -6,9 +6,9 @@
 #include <optional>
 #include <stdexcept>
 
-#include "sidestep/bench/reproduce/parallel.h"
 #include "sidestep/bench/reproduce/predicted_maps.h"
 #include "sidestep/bench/reproduce/published_maps.h"
+#include "sidestep/bench/task_pool.h"
 
 namespace sidestep::bench {
 namespace {

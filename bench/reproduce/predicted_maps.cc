@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "sidestep/bench/reproduce/parallel.h"
+#include "sidestep/bench/task_pool.h"
 #include "sidestep/core/observations.h"
 #include "sidestep/sdf/world_model.h"
 

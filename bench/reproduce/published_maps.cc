@@ -1,6 +1,6 @@
 #include "sidestep/bench/reproduce/published_maps.h"
 
-#include "sidestep/bench/reproduce/parallel.h"
+#include "sidestep/bench/task_pool.h"
 #include "sidestep/sdf/grid_field.h"
 #include "sidestep/sdf/map/fast_distance_transform.h"
 

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "sidestep/bench/reproduce/csv_table.h"
-#include "sidestep/bench/reproduce/parallel.h"
 #include "sidestep/bench/reproduce/published_table.h"
 #include "sidestep/core/input_error.h"
 #include "tests/support/temporary_folder.h"
@@ -114,20 +113,6 @@ TEST(TableComparison, RefusesATableWithoutItsKeysOrWithARowTwice) {
                            "pair,speed_m_per_s\n1,\n", "pair,speed_m_per_s\n1,0.1\n1,0.1\n"}) {
     EXPECT_THROW(CompareTables(ours, Parse(text), "published.csv"), InputError) << text;
   }
-}
-
-TEST(RunTasks, CallsEachTaskOnceAndPassesAnExceptionOn) {
-  for (const int num_jobs : {1, 3, 100}) {
-    std::vector<int> calls(50, 0);
-    RunTasks(50, num_jobs, [&](int i) { ++calls[static_cast<std::size_t>(i)]; });
-    EXPECT_EQ(calls, std::vector<int>(50, 1));
-    EXPECT_THROW(RunTasks(50, num_jobs,
-                          [](int i) {
-                            if (i == 7) throw std::runtime_error("seven");
-                          }),
-                 std::runtime_error);
-  }
-  RunTasks(0, 2, [](int) { FAIL(); });
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "sidestep/bench/reproduce/parallel.h"
+#include "sidestep/bench/task_pool.h"
 
 #include <algorithm>
 #include <atomic>
@@ -30,5 +30,7 @@ void RunTasks(int count, int num_jobs, const std::function<void(int)>& task) {
   for (std::thread& thread : others) thread.join();
   if (error) std::rethrow_exception(error);
 }
+
+int NumProcessors() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
 }  // namespace sidestep::bench
