@@ -37,7 +37,7 @@ int Run(const ClosedLoopCommand& command) {
                                   "whole_run.csv", "joints.gp", "rates.gp", "index.html"});
 
   bench::ClosedLoopStudy study = bench::RunClosedLoopStudy(
-      problem.scenario, problem.robot, SimulatedWorlds(paths), command.options,
+      problem.scenario, problem.robot, SimulatedWorlds(paths), paths.scenarios, command.options,
       [](const std::string& part) { PrintError("{}\n", part); });
   for (bench::EpisodeResult* const result : {&study.update, &study.prediction}) {
     for (const auto& [part, version] : Versions()) {

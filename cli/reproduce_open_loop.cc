@@ -1,6 +1,5 @@
 #include <unistd.h>
 
-#include <algorithm>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -38,7 +37,8 @@ struct OpenLoopCommand {
 };
 
 bench::OpenLoopExperiment MakeExperiment(const std::string& name, const OpenLoopCommand& command) {
-  bench::OpenLoopExperiment experiment = bench::MakeOpenLoopExperiment(name);
+  bench::OpenLoopExperiment experiment =
+      bench::MakeOpenLoopExperiment(name, FindDataPaths().scenarios);
   if (command.sigma_obs) experiment.sigma_obs = *command.sigma_obs;
   if (command.epsilon_m) experiment.epsilon_m = *command.epsilon_m;
   if (command.num_interpolated) experiment.num_interpolated = *command.num_interpolated;

@@ -6,6 +6,7 @@
 #include "sidestep/bench/reproduce/published_columns.h"
 #include "sidestep/bench/reproduce/sdf_timing.h"
 #include "sidestep/cli/console.h"
+#include "sidestep/cli/data_paths.h"
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/reproduce.h"
@@ -37,8 +38,9 @@ int Run(const SdfTimingCommand& command) {
   const std::string out = MakeOutFolder(command.out, {"rows.csv", "figure.gp", "index.html"});
 
   const std::size_t num_sizes = command.options.voxels_per_side.size();
-  const bench::CsvTable table = bench::MakeSdfTimingTable(bench::RunSdfTiming(
-      command.options, [&](int done) { PrintError("{} of {} sizes\n", done, num_sizes); }));
+  const bench::CsvTable table = bench::MakeSdfTimingTable(
+      bench::RunSdfTiming(command.options, FindDataPaths().scenarios,
+                          [&](int done) { PrintError("{} of {} sizes\n", done, num_sizes); }));
   WriteFile(out + "/rows.csv", table.ToText());
   Print("{}written: {}/rows.csv\n", bench::DescribeSdfTiming(table, published), out);
   const std::string svg = DrawInto(out, "figure", bench::MakeSdfTimingFigure(table, published));

@@ -1,9 +1,5 @@
 #include "sidestep/bench/reproduce/closed_loop.h"
 
-#include <limits>
-
-#include "sidestep/bench/reproduce/open_loop_experiment.h"
-
 namespace sidestep::bench {
 namespace {
 
@@ -13,22 +9,10 @@ constexpr double kSceneMargin_m = 0.2;  // of the published timings
 constexpr int kSteps = 31;
 constexpr double kStep_s = 0.1;
 
-GridSpec ClosedLoopGrid(int voxels_per_side) {
-  return {Eigen::Vector3d(-1, -1, -1), 0.04, {voxels_per_side, voxels_per_side, voxels_per_side}};
-}
-
-FieldScene Walkway(double speed_m_s) {
-  const OpenLoopExperiment experiment = MakeOpenLoopExperiment("panda_hsr");
-  return {"walkway",
-          experiment.static_boxes,
-          {{experiment.moving_box, speed_m_s * experiment.direction,
-            std::numeric_limits<double>::infinity()}}};
-}
-
 EpisodeTime At(int step) { return EpisodeTime(step * kStep_s); }
 
 // The fields of all later steps, as step `now` predicts them.
-void TimeStep(const FieldScene& scene, const GridSpec& grid, double margin_m, int now,
+void TimeStep(const scenarios::Scenario& scene, const GridSpec& grid, double margin_m, int now,
               std::vector<double>& init_s, std::vector<PredictionTimes>& predictions) {
   FieldTimer timer(scene, grid, margin_m, At(now - 1), At(now));
   init_s.push_back(timer.init_s());
@@ -44,14 +28,14 @@ scenarios::Scenario PublishedClosedLoop(scenarios::Scenario scenario, double spe
   scenario.num_interpolated = 0;
   scenario.sensor.rate_hz = scenario.replan_rate_hz;
   scenario.predictor = "two_frame";
-  scenario.grid = ClosedLoopGrid(voxels_per_side);
+  scenario.grid.size = {voxels_per_side, voxels_per_side, voxels_per_side};
   for (scenarios::MovingObstacle& obstacle : scenario.moving_obstacles) {
     std::visit([&](auto& motion) { motion.speed_m_s = speed_m_s; }, obstacle.motion);
   }
   return scenario;
 }
 
-void TimeWholeRun(const FieldScene& scene, const GridSpec& grid, double margin_m,
+void TimeWholeRun(const scenarios::Scenario& scene, const GridSpec& grid, double margin_m,
                   WholeRunTimes& times) {
   for (int now = 1; now + 1 < kSteps; ++now) {
     TimeStep(scene, grid, margin_m, now, times.init_s, times.predictions);
@@ -60,6 +44,7 @@ void TimeWholeRun(const FieldScene& scene, const GridSpec& grid, double margin_m
 
 ClosedLoopStudy RunClosedLoopStudy(const scenarios::Scenario& scenario,
                                    const robot::RobotModel& robot, const WorldFactory& make_world,
+                                   const std::string& scenarios_dir,
                                    const ClosedLoopOptions& options,
                                    const std::function<void(const std::string&)>& on_part) {
   const auto say = [&on_part](const std::string& what) {
@@ -84,14 +69,13 @@ ClosedLoopStudy RunClosedLoopStudy(const scenarios::Scenario& scenario,
     rate.cycle_s = run("prediction", voxels).times.at("cycle");
     const scenarios::Scenario published = PublishedClosedLoop(scenario, options.speed_m_s, voxels);
     std::vector<double> init_s;
-    TimeStep(Walkway(options.speed_m_s), published.grid,
-             published.epsilon_m + robot.largest_sphere_radius_m(), kStepOfRates, init_s,
-             rate.predictions);
+    TimeStep(published, published.grid, published.epsilon_m + robot.largest_sphere_radius_m(),
+             kStepOfRates, init_s, rate.predictions);
   }
   for (const std::string& name : FieldSceneNames()) {
     say("435 predictions of " + name);
-    TimeWholeRun(MakeFieldScene(name), PublishedTimingGrid(kMainGrid), kSceneMargin_m,
-                 study.whole_run);
+    TimeWholeRun(LoadBoxScene(scenarios_dir + "/" + name + ".yaml"), PublishedTimingGrid(kMainGrid),
+                 kSceneMargin_m, study.whole_run);
   }
   return study;
 }

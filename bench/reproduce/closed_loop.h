@@ -21,7 +21,7 @@ struct ClosedLoopOptions {
 };
 
 /// The scenario with the settings of the published closed loop: sigma, epsilon, no interpolated
-/// costs, an observation each cycle, a cube of cells of 4 cm from (-1, -1, -1).
+/// costs, an observation each cycle, a grid of as many cells on each side.
 scenarios::Scenario PublishedClosedLoop(scenarios::Scenario scenario, double speed_m_s,
                                         int voxels_per_side);
 
@@ -46,14 +46,16 @@ struct ClosedLoopStudy {
 };
 
 /// @param scenario to be run with the published settings; its task must be resolved.
+/// @param scenarios_dir the folder of the field scenes.
 /// @param on_part called with what is about to be done.
 ClosedLoopStudy RunClosedLoopStudy(const scenarios::Scenario& scenario,
                                    const robot::RobotModel& robot, const WorldFactory& make_world,
+                                   const std::string& scenarios_dir,
                                    const ClosedLoopOptions& options,
                                    const std::function<void(const std::string&)>& on_part = {});
 
 /// The 435 predictions of a scene, each step from the second on predicting all that remain.
-void TimeWholeRun(const FieldScene& scene, const GridSpec& grid, double margin_m,
+void TimeWholeRun(const scenarios::Scenario& scene, const GridSpec& grid, double margin_m,
                   WholeRunTimes& times);
 
 }  // namespace sidestep::bench

@@ -1,56 +1,35 @@
 #include "sidestep/bench/reproduce/field_scene.h"
 
-#include <algorithm>
-#include <limits>
 #include <stdexcept>
 
-#include "sidestep/bench/reproduce/published_rasteriser.h"
+#include "sidestep/core/input_error.h"
 
 namespace sidestep::bench {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
-
-const FieldScene::MovingBox kHighBox = {
-    {{0.3, 0.25, 1.45}, {0.15, 0.15, 0.15}}, {-0.6, 0, 0}, kNever};
-const FieldScene::MovingBox kOtherHighBox = {
-    {{0.55, -0.95, 1.45}, {0.15, 0.15, 0.15}}, {-0.17, 0.6, 0}, 2};
-const FieldScene::MovingBox kPillar = {
-    {{0.55, -0.95, -0.05}, {0.15, 0.15, 1.9}}, {-0.17, 0.6, 0}, 2};
-const FieldScene::MovingBox kOtherPillar = {
-    {{0.3, 0.25, -0.05}, {0.15, 0.15, 1.9}}, {-0.6, 0, 0}, kNever};
-const FieldScene::MovingBox kBlock = {{{0.4, 0.4, 0.4}, {0.2, 0.2, 0.2}}, {-0.17, 0.6, 0}, kNever};
-
-std::vector<FieldScene> Scenes() {
-  const std::vector<PublishedBox> table_and_cabinet =
-      MakeOpenLoopExperiment("wam_single_pillar").static_boxes;
-  return {
-      {"field_one_box", table_and_cabinet, {kHighBox}},
-      {"field_two_boxes", table_and_cabinet, {kHighBox, kOtherHighBox}},
-      {"field_one_pillar", table_and_cabinet, {kPillar}},
-      {"field_two_pillars", table_and_cabinet, {kOtherPillar, kPillar}},
-      {"field_large_block", {}, {kBlock}},
-  };
-}
-
-void FillBox(OccupancyGrid& occupancy, const PublishedBox& box) {
-  Fill(occupancy,
-       PublishedBoxCells(occupancy.spec, box.center_m, box.size_m, BoxAlignment::kIntended));
-}
+bool IsAlongTheAxes(const Pose& pose) { return pose.rotation().vec().isZero(0); }
 
 }  // namespace
 
-std::vector<std::string> FieldSceneNames() {
-  std::vector<std::string> names;
-  for (const FieldScene& scene : Scenes()) names.push_back(scene.name);
-  return names;
+scenarios::Scenario LoadBoxScene(const std::string& path, const scenarios::Settings& settings) {
+  scenarios::Scenario scene = scenarios::LoadScenario(path, settings);
+  const auto fail = [&](const std::string& name) {
+    throw InputError(path, "'" + name + "' is not a box along the axes, as published ones are");
+  };
+  for (const scenarios::StaticBox& box : scene.static_boxes) {
+    if (!IsAlongTheAxes(box.X_WO)) fail(box.name);
+  }
+  for (const scenarios::MovingObstacle& obstacle : scene.moving_obstacles) {
+    const bool turns = obstacle.faces_path || !obstacle.rpy_rad.isZero(0) ||
+                       std::holds_alternative<scenarios::RecordedMotion>(obstacle.motion);
+    if (turns || !std::holds_alternative<Box>(obstacle.shape)) fail(obstacle.name);
+  }
+  return scene;
 }
 
-FieldScene MakeFieldScene(const std::string& name) {
-  for (const FieldScene& scene : Scenes()) {
-    if (scene.name == name) return scene;
-  }
-  throw std::invalid_argument("unknown field scene '" + name + "'");
+std::vector<std::string> FieldSceneNames() {
+  return {"field_one_box", "field_two_boxes", "field_one_pillar", "field_two_pillars",
+          "field_large_block"};
 }
 
 GridSpec PublishedTimingGrid(int voxels_per_side) {
@@ -61,18 +40,22 @@ GridSpec PublishedTimingGrid(int voxels_per_side) {
           {voxels_per_side, voxels_per_side, voxels_per_side}};
 }
 
-OccupancyGrid StaticOccupancy(const FieldScene& scene, const GridSpec& grid) {
+OccupancyGrid StaticOccupancy(const scenarios::Scenario& scene, const GridSpec& grid,
+                              BoxAlignment alignment) {
   OccupancyGrid occupancy(grid);
-  for (const PublishedBox& box : scene.static_boxes) FillBox(occupancy, box);
+  for (const scenarios::StaticBox& box : scene.static_boxes) {
+    Fill(occupancy, PublishedBoxCells(grid, box.X_WO.translation(), box.size_m, alignment));
+  }
   return occupancy;
 }
 
-OccupancyGrid MovingOccupancy(const FieldScene& scene, const GridSpec& grid, EpisodeTime t) {
+OccupancyGrid MovingOccupancy(const scenarios::Scenario& scene, const GridSpec& grid,
+                              EpisodeTime t) {
   OccupancyGrid occupancy(grid);
-  for (const FieldScene::MovingBox& moving : scene.moving_boxes) {
-    PublishedBox box = moving.at_start;
-    box.center_m += std::min(t.seconds(), moving.stop_s) * moving.velocity_m_s;
-    FillBox(occupancy, box);
+  for (const scenarios::MovingObstacle& obstacle : scene.moving_obstacles) {
+    Fill(occupancy,
+         PublishedBoxCells(grid, PoseAt(obstacle, t).translation(),
+                           std::get<Box>(obstacle.shape).size_m, BoxAlignment::kIntended));
   }
   return occupancy;
 }

@@ -19,8 +19,8 @@ namespace {
 constexpr sdf::DistanceConvention kConvention = sdf::DistanceConvention::kBwdist;
 constexpr int kQueries = 20000;
 
-std::vector<sdf::Component> FindObjects(const FieldScene& scene, const OccupancyGrid& standing,
-                                        EpisodeTime t) {
+std::vector<sdf::Component> FindObjects(const scenarios::Scenario& scene,
+                                        const OccupancyGrid& standing, EpisodeTime t) {
   OccupancyGrid moving = MovingOccupancy(scene, standing.spec, t);
   for (std::size_t i = 0; i < moving.cells.size(); ++i) {
     if (standing.cells[i] != 0) moving.cells[i] = 0;
@@ -63,7 +63,7 @@ Eigen::Matrix3Xd RandomPoints(const GridSpec& grid) {
 
 }  // namespace
 
-FieldTimer::FieldTimer(const FieldScene& scene, const GridSpec& grid, double margin_m,
+FieldTimer::FieldTimer(const scenarios::Scenario& scene, const GridSpec& grid, double margin_m,
                        EpisodeTime first, EpisodeTime second)
     : margin_m_(margin_m),
       static_occupancy_(StaticOccupancy(scene, grid)),

@@ -40,8 +40,8 @@ class FieldTimer {
  public:
   /// @param margin_m of objects' fields.
   /// @throws std::invalid_argument unless first < second.
-  FieldTimer(const FieldScene& scene, const GridSpec& grid, double margin_m, EpisodeTime first,
-             EpisodeTime second);
+  FieldTimer(const scenarios::Scenario& scene, const GridSpec& grid, double margin_m,
+             EpisodeTime first, EpisodeTime second);
 
   /// Making the static field and those of the objects [s, CPU].
   double init_s() const { return init_s_; }

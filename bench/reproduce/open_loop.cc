@@ -8,11 +8,11 @@ namespace sidestep::bench {
 namespace {
 
 Trajectory StraightLine(const OpenLoopExperiment& experiment, const OpenLoopTask& task) {
-  const int K = experiment.num_states, n = static_cast<int>(task.q_start.size());
+  const int K = experiment.num_states(), n = static_cast<int>(task.q_start.size());
   const Eigen::VectorXd displacement = task.q_goal - task.q_start;
   Trajectory line{Eigen::VectorXd(K), Eigen::MatrixXd(n, K), Eigen::MatrixXd(n, K)};
   for (int k = 0; k < K; ++k) {
-    line.t_s(k) = k * experiment.step_s;
+    line.t_s(k) = k * experiment.scene.step_s;
     line.q.col(k) = task.q_start + k / (K - 1.0) * displacement;
     line.v.col(k) = displacement / (K - 1);
   }
@@ -33,7 +33,7 @@ void AddEndPriors(planner::GaussNewton& problem, const OpenLoopExperiment& exper
                   const OpenLoopTask& task) {
   const Eigen::VectorXd rest = Eigen::VectorXd::Zero(task.q_start.size());
   problem.AddPrior(0, task.q_start, rest, experiment.sigma_prior);
-  problem.AddPrior(experiment.num_states - 1, task.q_goal, rest, experiment.sigma_prior);
+  problem.AddPrior(experiment.num_states() - 1, task.q_goal, rest, experiment.sigma_prior);
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ int CountCollidingStates(const robot::RobotModel& robot, const Trajectory& traje
 OpenLoopResult RunOpenLoop(const OpenLoopExperiment& experiment, const robot::RobotModel& robot,
                            const OpenLoopTask& task, const BelievedField& believed,
                            const std::vector<const sdf::DistanceField*>& truth, bool once) {
-  const int K = experiment.num_states;
+  const int K = experiment.num_states();
   planner::GaussNewton problem(robot, StraightLine(experiment, task), Options(experiment));
   AddEndPriors(problem, experiment, task);
   OpenLoopResult result;

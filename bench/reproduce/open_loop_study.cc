@@ -50,12 +50,12 @@ OpenLoopStudy RunOpenLoopStudy(const OpenLoopExperiment& experiment, const std::
     pairs.resize(experiment.pairs.size());
     std::iota(pairs.begin(), pairs.end(), 1);
   }
-  const std::string& robot_file =
-      options.intended_geometry ? experiment.own_robot : experiment.published_robot;
+  const scenarios::Scenario& scene = experiment.scene;
+  const robot::RobotModel own_robot = robot::RobotModel::Load(models_dir, scene.robot, scene.X_WB);
   const robot::RobotModel robot =
-      robot::RobotModel::FromFile(models_dir + "/" + robot_file, experiment.X_WB);
-  const robot::RobotModel own_robot =
-      robot::RobotModel::FromFile(models_dir + "/" + experiment.own_robot, experiment.X_WB);
+      options.intended_geometry
+          ? own_robot
+          : robot::RobotModel::FromFile(models_dir + "/" + experiment.published_robot, scene.X_WB);
 
   OpenLoopStudy study;
   study.ignored_spheres = robot.mount_spheres();

@@ -50,11 +50,11 @@ Scan ToScan(const OccupancyGrid& occupancy, EpisodeTime t) {
 PredictedMaps::PredictedMaps(const OpenLoopExperiment& experiment, const PublishedMaps& maps,
                              sdf::DistanceConvention convention, const std::string& predictor,
                              double max_distance_m, int num_jobs)
-    : num_states_(experiment.num_states) {
+    : num_states_(experiment.num_states()) {
   sdf::WorldModelOptions options;
   options.knowledge = sdf::Knowledge::kPrediction;
   options.predictor = predictor;
-  options.grid = experiment.grid;
+  options.grid = experiment.scene.grid;
   options.max_distance_m = max_distance_m;
   options.convention = convention;
   sdf::MakeWorldModel(options);  // complains here and not in a thread
@@ -67,10 +67,11 @@ PredictedMaps::PredictedMaps(const OpenLoopExperiment& experiment, const Publish
     const std::unique_ptr<sdf::WorldModel> world = sdf::MakeWorldModel(options);
     for (int now = 0; now < num_states_; ++now) {
       world->Observe(
-          ToScan(maps.OccupancyAt(speed_m_s, now), EpisodeTime(now * experiment.step_s)));
+          ToScan(maps.OccupancyAt(speed_m_s, now), EpisodeTime(now * experiment.scene.step_s)));
       const std::shared_ptr<const sdf::DistanceField> belief = world->MakeField();
       for (int k = 0; k < num_states_; ++k) {
-        fields.push_back(std::make_unique<FrozenField>(belief, EpisodeTime(k * experiment.step_s)));
+        fields.push_back(
+            std::make_unique<FrozenField>(belief, EpisodeTime(k * experiment.scene.step_s)));
       }
     }
   });

@@ -1,5 +1,6 @@
 #include "sidestep/bench/reproduce/published_maps.h"
 
+#include "sidestep/bench/reproduce/field_scene.h"
 #include "sidestep/bench/task_pool.h"
 #include "sidestep/sdf/grid_field.h"
 #include "sidestep/sdf/map/fast_distance_transform.h"
@@ -8,14 +9,10 @@ namespace sidestep::bench {
 
 PublishedMaps::PublishedMaps(const OpenLoopExperiment& experiment, BoxAlignment static_boxes,
                              sdf::DistanceConvention convention, int num_jobs)
-    : experiment_(experiment), static_occupancy_(experiment.grid) {
-  for (const PublishedBox& box : experiment.static_boxes) {
-    Fill(static_occupancy_,
-         PublishedBoxCells(experiment.grid, box.center_m, box.size_m, static_boxes));
-  }
-
+    : experiment_(experiment),
+      static_occupancy_(StaticOccupancy(experiment.scene, experiment.scene.grid, static_boxes)) {
   for (const double speed_m_s : experiment.speeds_m_s) {
-    for (int k = 0; k < experiment.num_states; ++k) fields_[MovingCells(speed_m_s, k)] = nullptr;
+    for (int k = 0; k < experiment.num_states(); ++k) fields_[MovingCells(speed_m_s, k)] = nullptr;
   }
   std::vector<decltype(fields_)::iterator> entries;
   for (auto entry = fields_.begin(); entry != fields_.end(); ++entry) entries.push_back(entry);
@@ -32,8 +29,9 @@ PublishedMaps::PublishedMaps(const OpenLoopExperiment& experiment, BoxAlignment 
 }
 
 CellRange PublishedMaps::MovingCells(double speed_m_s, int step) const {
-  const PublishedBox box = experiment_.MovingBoxAt(speed_m_s, step);
-  return PublishedBoxCells(experiment_.grid, box.center_m, box.size_m, BoxAlignment::kIntended);
+  const scenarios::Scenario& scene = experiment_.scene;
+  return PublishedBoxCells(scene.grid, experiment_.MovingBoxCenter(speed_m_s, step * scene.step_s),
+                           experiment_.moving_box().size_m, BoxAlignment::kIntended);
 }
 
 OccupancyGrid PublishedMaps::OccupancyAt(double speed_m_s, int step) const {
@@ -44,7 +42,7 @@ OccupancyGrid PublishedMaps::OccupancyAt(double speed_m_s, int step) const {
 
 std::vector<const sdf::DistanceField*> PublishedMaps::FieldsAt(double speed_m_s) const {
   std::vector<const sdf::DistanceField*> fields;
-  for (int k = 0; k < experiment_.num_states; ++k) {
+  for (int k = 0; k < experiment_.num_states(); ++k) {
     fields.push_back(fields_.at(MovingCells(speed_m_s, k)).get());
   }
   return fields;

@@ -28,8 +28,6 @@ class PublishedMaps {
   /// The fields of steps 0, 1, ... at one of the experiment's speeds. They live as long as this.
   std::vector<const sdf::DistanceField*> FieldsAt(double speed_m_s) const;
 
-  int num_fields() const { return static_cast<int>(fields_.size()); }
-
  private:
   CellRange MovingCells(double speed_m_s, int step) const;
 

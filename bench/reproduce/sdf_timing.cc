@@ -98,6 +98,7 @@ std::vector<Entry> Entries(const CsvTable& ours, std::size_t row,
 }  // namespace
 
 std::vector<SdfTimingSize> RunSdfTiming(const SdfTimingOptions& options,
+                                        const std::string& scenarios_dir,
                                         const std::function<void(int done)>& on_size) {
   std::vector<SdfTimingSize> sizes;
   for (const int voxels : options.voxels_per_side) {
@@ -106,7 +107,7 @@ std::vector<SdfTimingSize> RunSdfTiming(const SdfTimingOptions& options,
     size.voxels_per_side = voxels;
     size.cell_m = grid.cell_m;
     for (const std::string& name : options.scenes) {
-      const FieldScene scene = MakeFieldScene(name);
+      const scenarios::Scenario scene = LoadBoxScene(scenarios_dir + "/" + name + ".yaml");
       for (int repeat = 0; repeat < options.repeats; ++repeat) {
         FieldTimer timer(scene, grid, kMargin_m, kFirstSeen, kSecondSeen);
         size.init_s.push_back(timer.init_s());

@@ -31,8 +31,10 @@ struct SdfTimingSize {
 
 /// The objects are seen 0.2 s and 0.6 s after the start, with a margin of 0.2 m, and predicted at
 /// 0, 0.1, ... 3 s, all as published.
+/// @param scenarios_dir the folder of scenarios. @throws InputError as LoadBoxScene.
 /// @param on_size called after each size with the number of those done.
 std::vector<SdfTimingSize> RunSdfTiming(const SdfTimingOptions& options,
+                                        const std::string& scenarios_dir,
                                         const std::function<void(int done)>& on_size = {});
 
 /// One row a size: the median, the 10 % and the 90 % quantile of each measure [ms], the errors [m].

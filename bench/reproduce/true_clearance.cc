@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "sidestep/core/solid.h"
+#include "sidestep/bench/true_world.h"
 #include "sidestep/core/time.h"
 #include "sidestep/planner/guarded_spheres.h"
 #include "sidestep/sdf/shape_field.h"
@@ -13,10 +13,6 @@ namespace {
 
 constexpr int kSamplesAStep = 20;
 
-PlacedShape Placed(const PublishedBox& box) {
-  return {Box{box.size_m}, Pose::Translation(box.center_m)};
-}
-
 }  // namespace
 
 TrueClearance MeasureTrueClearance(const OpenLoopExperiment& experiment,
@@ -25,16 +21,14 @@ TrueClearance MeasureTrueClearance(const OpenLoopExperiment& experiment,
   constexpr double kFar = std::numeric_limits<double>::infinity();
   TrueClearance least{kFar, kFar, kFar};
   const std::vector<int> guarded = planner::GuardedSpheres(robot);
-  StaticSolids still;  // there is no floor
-  for (const PublishedBox& box : experiment.static_boxes) still.shapes.push_back(Placed(box));
-  const sdf::ShapeField static_world(still);
+  const sdf::ShapeField static_world({StaticShapes(experiment.scene), {}});  // there is no floor
   const sdf::ShapeField moving_world(
-      {}, {{Box{experiment.moving_box.size_m}, [&](EpisodeTime t) {
-              return Placed(experiment.MovingBoxAtTime(speed_m_s, t.seconds())).X_WO;
+      {}, {{experiment.moving_box(), [&](EpisodeTime t) {
+              return Pose::Translation(experiment.MovingBoxCenter(speed_m_s, t.seconds()));
             }}});
   const int num_samples = (trajectory.num_states() - 1) * kSamplesAStep + 1;
   for (int i = 0; i < num_samples; ++i) {
-    const double t_s = i * experiment.step_s / kSamplesAStep;
+    const double t_s = i * experiment.scene.step_s / kSamplesAStep;
     const robot::SphereCenters centers =
         robot.ComputeSphereCenters(Sample(trajectory, HorizonOffset(t_s)).q, false);
     for (const int s : guarded) {

@@ -32,7 +32,8 @@ TEST(ClosedLoop, TakesThePublishedSettings) {
 
 TEST(ClosedLoop, PredictsAllRemainingStepsAtEachStep) {
   WholeRunTimes times;
-  TimeWholeRun(MakeFieldScene("field_large_block"), PublishedTimingGrid(32), 0.2, times);
+  TimeWholeRun(LoadBoxScene(SIDESTEP_SOURCE_DIR "/scenarios/field_large_block.yaml"),
+               PublishedTimingGrid(32), 0.2, times);
   EXPECT_EQ(times.predictions.size(), 435u);
   EXPECT_EQ(times.init_s.size(), 29u);
 }

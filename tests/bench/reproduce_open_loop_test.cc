@@ -21,9 +21,10 @@ constexpr sdf::Knowledge kUpdate = sdf::Knowledge::kExecuteAndUpdate;
 constexpr sdf::Knowledge kFull = sdf::Knowledge::kFullKnowledge;
 
 const std::string kModels = SIDESTEP_SOURCE_DIR "/models";
+const std::string kScenarios = SIDESTEP_SOURCE_DIR "/scenarios";
 
 OpenLoopExperiment AtSpeed(const std::string& name, double speed_m_s) {
-  OpenLoopExperiment experiment = MakeOpenLoopExperiment(name);
+  OpenLoopExperiment experiment = MakeOpenLoopExperiment(name, kScenarios);
   experiment.speeds_m_s = {speed_m_s};
   return experiment;
 }
@@ -160,9 +161,9 @@ class EmptyField final : public sdf::DistanceField {
 TEST(OpenLoop, HasTheClosedFormGpCostInAnEmptyWorld) {
   const EmptyField empty;
   for (const std::string& name : OpenLoopExperimentNames()) {
-    const OpenLoopExperiment experiment = MakeOpenLoopExperiment(name);
-    const robot::RobotModel robot =
-        robot::RobotModel::FromFile(kModels + "/" + experiment.published_robot, experiment.X_WB);
+    const OpenLoopExperiment experiment = MakeOpenLoopExperiment(name, kScenarios);
+    const robot::RobotModel robot = robot::RobotModel::FromFile(
+        kModels + "/" + experiment.published_robot, experiment.scene.X_WB);
     for (const auto& [start, goal] : experiment.pairs) {
       const OpenLoopTask task{robot.configurations().at(start), robot.configurations().at(goal)};
       const OpenLoopResult result = RunOpenLoop(
@@ -179,7 +180,7 @@ TEST(OpenLoop, HasTheClosedFormGpCostInAnEmptyWorld) {
 }
 
 TEST(OpenLoop, GivesTheSameBitsWithAnyNumberOfJobs) {
-  OpenLoopExperiment panda = MakeOpenLoopExperiment("panda_hsr");
+  OpenLoopExperiment panda = MakeOpenLoopExperiment("panda_hsr", kScenarios);
   panda.speeds_m_s = {1.0, 1.9};
   const auto text = [&](int num_jobs) {
     return MakeOpenLoopTable(
@@ -190,7 +191,7 @@ TEST(OpenLoop, GivesTheSameBitsWithAnyNumberOfJobs) {
 }
 
 TEST(OpenLoop, RefusesAPairThatIsNotThere) {
-  const OpenLoopExperiment wam = MakeOpenLoopExperiment("wam_single_pillar");
+  const OpenLoopExperiment wam = MakeOpenLoopExperiment("wam_single_pillar", kScenarios);
   EXPECT_THROW(RunOpenLoopStudy(wam, kModels, {.pairs = {8}}), std::invalid_argument);
   EXPECT_THROW(RunOpenLoopStudy(wam, kModels, {.pairs = {0}}), std::invalid_argument);
 }

@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kClamp_m = 0.42;
 const std::string kModels = SIDESTEP_SOURCE_DIR "/models";
+const std::string kScenarios = SIDESTEP_SOURCE_DIR "/scenarios";
 
 // Points in a box around the Panda and the way of the HSR.
 std::vector<Eigen::Vector3d> Points() {
@@ -33,7 +34,7 @@ std::vector<Eigen::Vector3d> Points() {
 struct World {
   explicit World(double speed) : speed_m_s(speed) { experiment.speeds_m_s = {speed}; }
 
-  OpenLoopExperiment experiment = MakeOpenLoopExperiment("panda_hsr");
+  OpenLoopExperiment experiment = MakeOpenLoopExperiment("panda_hsr", kScenarios);
   double speed_m_s;
   PublishedMaps MakeMaps() const {
     return PublishedMaps(experiment, BoxAlignment::kOneCellLow, sdf::DistanceConvention::kBwdist,
@@ -81,7 +82,7 @@ TEST(PredictedMaps, AreFullKnowledgeWhereTheObstacleMovesByWholeCells) {
 }
 
 TEST(OpenLoop, UnderPredictionPassesTheHsrWithLessEffortThanUnderUpdates) {
-  OpenLoopExperiment panda = MakeOpenLoopExperiment("panda_hsr");
+  OpenLoopExperiment panda = MakeOpenLoopExperiment("panda_hsr", kScenarios);
   panda.speeds_m_s = {1.4};
   const OpenLoopStudy study = RunOpenLoopStudy(
       panda, kModels,
@@ -96,14 +97,17 @@ TEST(OpenLoop, UnderPredictionPassesTheHsrWithLessEffortThanUnderUpdates) {
 class TrueClearanceTest : public ::testing::Test {
  protected:
   TrueClearanceTest() {
-    experiment_.static_boxes = {{{0, 0, -1}, {0.2, 0.2, 0.2}}};
-    experiment_.moving_box = {{0, -3, 0}, {0.2, 0.2, 0.2}};
+    experiment_.scene.static_boxes = {
+        {"block", Pose::Translation({0, 0, -1}), Eigen::Vector3d::Constant(0.2)}};
+    scenarios::MovingObstacle& pillar = experiment_.scene.moving_obstacles.front();
+    pillar.shape = Box{Eigen::Vector3d::Constant(0.2)};
+    std::get<scenarios::LinearMotion>(pillar.motion).start_m = {0, -3, 0};
     experiment_.direction = {0, 1, 0};
     trajectory_.t_s = Eigen::VectorXd::LinSpaced(31, 0, 3);
     trajectory_.q = trajectory_.v = Eigen::MatrixXd::Zero(7, 31);
   }
 
-  OpenLoopExperiment experiment_ = MakeOpenLoopExperiment("wam_single_pillar");
+  OpenLoopExperiment experiment_ = MakeOpenLoopExperiment("wam_single_pillar", kScenarios);
   const robot::RobotModel robot_ = robot::RobotModel::Load(kModels, "wam", Pose());
   Trajectory trajectory_;
 };

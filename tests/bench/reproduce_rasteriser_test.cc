@@ -22,8 +22,15 @@ std::ostream& operator<<(std::ostream& stream, const CellRange& cells) {
 
 namespace {
 
+const std::string kScenarios = SIDESTEP_SOURCE_DIR "/scenarios";
+
 CellRange Cells(int x0, int x1, int y0, int y1, int z0, int z1) {
   return {{x0, y0, z0}, {x1, y1, z1}};
+}
+
+CellRange StaticCells(const OpenLoopExperiment& experiment, std::size_t b, BoxAlignment alignment) {
+  const scenarios::StaticBox& box = experiment.scene.static_boxes.at(b);
+  return PublishedBoxCells(experiment.scene.grid, box.X_WO.translation(), box.size_m, alignment);
 }
 
 TEST(PublishedRasteriser, SetsTheStaticBoxesOfTheWamExperimentOneCellLow) {
@@ -33,28 +40,21 @@ TEST(PublishedRasteriser, SetsTheStaticBoxesOfTheWamExperimentOneCellLow) {
       Cells(42, 56, 9, 9, 0, 47),    Cells(32, 42, 34, 34, 0, 47),  Cells(42, 56, 10, 34, 47, 47),
       Cells(42, 56, 10, 34, 34, 34), Cells(42, 56, 10, 34, 22, 22), Cells(42, 56, 10, 34, 9, 9),
   };
-  const OpenLoopExperiment wam = MakeOpenLoopExperiment("wam_single_pillar");
-  ASSERT_EQ(wam.static_boxes.size(), published.size());
+  const OpenLoopExperiment wam = MakeOpenLoopExperiment("wam_single_pillar", kScenarios);
+  ASSERT_EQ(wam.scene.static_boxes.size(), published.size());
   for (std::size_t b = 0; b < published.size(); ++b) {
-    const PublishedBox& box = wam.static_boxes[b];
-    EXPECT_EQ(PublishedBoxCells(wam.grid, box.center_m, box.size_m, BoxAlignment::kOneCellLow),
-              published[b])
-        << "box " << b + 1;
+    EXPECT_EQ(StaticCells(wam, b, BoxAlignment::kOneCellLow), published[b]) << "box " << b + 1;
   }
 }
 
 TEST(PublishedRasteriser, SetsTheTablesOfThePandaExperimentOneCellLow) {
-  const OpenLoopExperiment panda = MakeOpenLoopExperiment("panda_hsr");
+  const OpenLoopExperiment panda = MakeOpenLoopExperiment("panda_hsr", kScenarios);
   const std::vector<CellRange> published = {Cells(6, 26, 9, 39, 24, 34),
                                             Cells(40, 60, 9, 39, 24, 34)};
   for (std::size_t b = 0; b < published.size(); ++b) {
-    const PublishedBox& box = panda.static_boxes[b];
-    EXPECT_EQ(PublishedBoxCells(panda.grid, box.center_m, box.size_m, BoxAlignment::kOneCellLow),
-              published[b]);
+    EXPECT_EQ(StaticCells(panda, b, BoxAlignment::kOneCellLow), published[b]);
   }
-  const PublishedBox& left = panda.static_boxes[0];
-  EXPECT_EQ(PublishedBoxCells(panda.grid, left.center_m, left.size_m, BoxAlignment::kIntended),
-            Cells(7, 27, 10, 40, 25, 35));
+  EXPECT_EQ(StaticCells(panda, 0, BoxAlignment::kIntended), Cells(7, 27, 10, 40, 25, 35));
 }
 
 // Positions on exact half cells, where the last bit decides, are among them.
@@ -74,18 +74,19 @@ TEST(PublishedRasteriser, FollowsTheMovingBoxes) {
       {"panda_hsr", 2.0, 30, CellRange()},  // has left the grid
   };
   for (const MovingCase& test : cases) {
-    const OpenLoopExperiment experiment = MakeOpenLoopExperiment(test.experiment);
-    const PublishedBox box = experiment.MovingBoxAt(test.speed_m_s, test.step);
-    EXPECT_EQ(PublishedBoxCells(experiment.grid, box.center_m, box.size_m, BoxAlignment::kIntended),
+    const OpenLoopExperiment experiment = MakeOpenLoopExperiment(test.experiment, kScenarios);
+    const Eigen::Vector3d center_m = experiment.MovingBoxCenter(test.speed_m_s, test.step * 0.1);
+    EXPECT_EQ(PublishedBoxCells(experiment.scene.grid, center_m, experiment.moving_box().size_m,
+                                BoxAlignment::kIntended),
               test.cells)
         << test.experiment << " at " << test.speed_m_s << " m/s, step " << test.step;
   }
 }
 
 TEST(OpenLoopExperiment, StopsThePillarAfterTwoSeconds) {
-  const OpenLoopExperiment wam = MakeOpenLoopExperiment("wam_single_pillar");
-  EXPECT_NE(wam.MovingBoxAt(0.7, 19).center_m, wam.MovingBoxAt(0.7, 20).center_m);
-  EXPECT_EQ(wam.MovingBoxAt(0.7, 20).center_m, wam.MovingBoxAt(0.7, 30).center_m);
+  const OpenLoopExperiment wam = MakeOpenLoopExperiment("wam_single_pillar", kScenarios);
+  EXPECT_NE(wam.MovingBoxCenter(0.7, 1.9), wam.MovingBoxCenter(0.7, 2.0));
+  EXPECT_EQ(wam.MovingBoxCenter(0.7, 2.0), wam.MovingBoxCenter(0.7, 3.0));
 }
 
 struct CountCase {
@@ -95,7 +96,7 @@ struct CountCase {
 TEST(PublishedMaps, FillAsManyCellsAsTheAuthorsDo) {
   for (const CountCase& test :
        {CountCase{"wam_single_pillar", 4515, 5495}, CountCase{"panda_hsr", 14322, 20367}}) {
-    OpenLoopExperiment experiment = MakeOpenLoopExperiment(test.experiment);
+    OpenLoopExperiment experiment = MakeOpenLoopExperiment(test.experiment, kScenarios);
     experiment.speeds_m_s.clear();  // no fields
     const PublishedMaps maps(experiment, BoxAlignment::kOneCellLow,
                              sdf::DistanceConvention::kBwdist, 1);
@@ -105,7 +106,7 @@ TEST(PublishedMaps, FillAsManyCellsAsTheAuthorsDo) {
 }
 
 TEST(PublishedMaps, HoldTheAuthorsDistancesToTheBit) {
-  OpenLoopExperiment wam = MakeOpenLoopExperiment("wam_single_pillar");
+  OpenLoopExperiment wam = MakeOpenLoopExperiment("wam_single_pillar", kScenarios);
   wam.speeds_m_s = {0.1};
   const PublishedMaps maps(wam, BoxAlignment::kOneCellLow, sdf::DistanceConvention::kBwdist, 1);
   const sdf::DistanceField& field = *maps.FieldsAt(0.1)[0];
@@ -119,7 +120,7 @@ TEST(PublishedMaps, HoldTheAuthorsDistancesToTheBit) {
                              {30, 30, 30, 0.17888544499874115},
                              {44, 35, 19, -0.03999999910593033},
                              {63, 63, 63, 1.3541048765182495}}) {
-    const Eigen::Vector3d p_W = wam.grid.Center(value.i, value.j, value.k);
+    const Eigen::Vector3d p_W = wam.scene.grid.Center(value.i, value.j, value.k);
     EXPECT_NEAR(field.Sample(p_W, EpisodeTime()).distance_m, value.distance_m, 1e-14);
   }
 }

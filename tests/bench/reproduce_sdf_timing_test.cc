@@ -18,11 +18,17 @@ namespace {
 
 constexpr EpisodeTime kFirst(0.2), kSecond(0.6);
 
+const std::string kScenarios = SIDESTEP_SOURCE_DIR "/scenarios";
+
+scenarios::Scenario Scene(const std::string& name) {
+  return LoadBoxScene(kScenarios + "/" + name + ".yaml");
+}
+
 class FieldScenes : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(FieldScenes, AreComposedExactlyInFreeSpaceWithinTheMargin) {
   const GridSpec grid = PublishedTimingGrid(64);
-  FieldTimer timer(MakeFieldScene(GetParam()), grid, 0.2, kFirst, kSecond);
+  FieldTimer timer(Scene(GetParam()), grid, 0.2, kFirst, kSecond);
   int compared = 0;
   for (const double t_s : {0.0, 0.3, 0.6, 1.1, 1.7}) {
     const EpisodeTime t(t_s);
@@ -34,12 +40,12 @@ TEST_P(FieldScenes, AreComposedExactlyInFreeSpaceWithinTheMargin) {
 }
 
 TEST_P(FieldScenes, MoveAsPublished) {
-  const FieldScene scene = MakeFieldScene(GetParam());
+  const scenarios::Scenario scene = Scene(GetParam());
   const GridSpec grid = PublishedTimingGrid(96);
   const FieldTimer timer(scene, grid, 0.2, kFirst, kSecond);
-  ASSERT_EQ(timer.objects().size(), scene.moving_boxes.size());
-  for (const FieldScene::MovingBox& box : scene.moving_boxes) {
-    const Eigen::Vector3d p_m = box.at_start.center_m + 1.5 * box.velocity_m_s;
+  ASSERT_EQ(timer.objects().size(), scene.moving_obstacles.size());
+  for (const scenarios::MovingObstacle& obstacle : scene.moving_obstacles) {
+    const Eigen::Vector3d p_m = PoseAt(obstacle, EpisodeTime(1.5)).translation();
     double nearest_m = 1e9;
     for (const sdf::MovingField& object : timer.objects()) {
       const Eigen::Vector3d p_WO = object.X_WO(EpisodeTime(1.5)).translation();
@@ -50,41 +56,15 @@ TEST_P(FieldScenes, MoveAsPublished) {
   }
 }
 
-TEST_P(FieldScenes, AreTheScenariosOfTheirNames) {
-  const FieldScene scene = MakeFieldScene(GetParam());
-  const scenarios::Scenario scenario =
-      scenarios::LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/" + GetParam() + ".yaml");
-  EXPECT_EQ(scenario.robot, "");
-  EXPECT_EQ(scenario.grid, PublishedTimingGrid(96));
-  ASSERT_EQ(scenario.static_boxes.size(), scene.static_boxes.size());
-  for (std::size_t i = 0; i < scene.static_boxes.size(); ++i) {
-    EXPECT_EQ(scenario.static_boxes[i].X_WO.translation(), scene.static_boxes[i].center_m) << i;
-    EXPECT_EQ(scenario.static_boxes[i].size_m, scene.static_boxes[i].size_m) << i;
-  }
-  ASSERT_EQ(scenario.moving_obstacles.size(), scene.moving_boxes.size());
-  for (std::size_t i = 0; i < scene.moving_boxes.size(); ++i) {
-    const FieldScene::MovingBox& box = scene.moving_boxes[i];
-    const scenarios::MovingObstacle& obstacle = scenario.moving_obstacles[i];
-    EXPECT_EQ(std::get<Box>(obstacle.shape).size_m, box.at_start.size_m) << i;
-    for (const double t_s : {0.0, 1.3, 2.9}) {
-      const Eigen::Vector3d p_WO =
-          box.at_start.center_m + std::min(t_s, box.stop_s) * box.velocity_m_s;
-      EXPECT_LT((PoseAt(obstacle, EpisodeTime(t_s)).translation() - p_WO).norm(), 1e-12) << i;
-    }
-  }
-}
-
 INSTANTIATE_TEST_SUITE_P(All, FieldScenes, ::testing::ValuesIn(FieldSceneNames()),
                          [](const auto& test) { return test.param; });
 
 TEST(FieldScene, HasTheStaticCellsOfTheAuthorsMap) {
   const GridSpec grid = PublishedTimingGrid(96);
   EXPECT_EQ(grid.cell_m, 0.04);
-  EXPECT_EQ(StaticOccupancy(MakeFieldScene("field_large_block"), grid).CountFilled(), 0u);
+  EXPECT_EQ(StaticOccupancy(Scene("field_large_block"), grid).CountFilled(), 0u);
   // The pillar fills 5 x 5 x 49 cells wherever it is whole.
-  EXPECT_EQ(MovingOccupancy(MakeFieldScene("field_one_pillar"), grid, kSecond).CountFilled(),
-            5u * 5 * 49);
-  EXPECT_THROW(MakeFieldScene("field_of_dreams"), std::invalid_argument);
+  EXPECT_EQ(MovingOccupancy(Scene("field_one_pillar"), grid, kSecond).CountFilled(), 5u * 5 * 49);
 }
 
 TEST(PublishedTimingGrid, HasThePublishedCells) {
@@ -96,14 +76,14 @@ TEST(PublishedTimingGrid, HasThePublishedCells) {
 }
 
 TEST(FieldTimer, RefusesMomentsThatDoNotFollow) {
-  const FieldScene scene = MakeFieldScene("field_one_box");
+  const scenarios::Scenario scene = Scene("field_one_box");
   EXPECT_THROW(FieldTimer(scene, PublishedTimingGrid(64), 0.2, kSecond, kFirst),
                std::invalid_argument);
 }
 
 TEST(SdfTiming, MakesARowOfEachSize) {
-  const CsvTable table = MakeSdfTimingTable(
-      RunSdfTiming({.voxels_per_side = {32, 64}, .scenes = {"field_large_block"}, .repeats = 2}));
+  const CsvTable table = MakeSdfTimingTable(RunSdfTiming(
+      {.voxels_per_side = {32, 64}, .scenes = {"field_large_block"}, .repeats = 2}, kScenarios));
   ASSERT_EQ(table.num_rows(), 2u);
   const auto at = [&](std::size_t row, const char* column) {
     return table.At(row, table.Find(column).value()).value();

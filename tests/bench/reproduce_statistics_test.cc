@@ -16,6 +16,8 @@
 namespace sidestep::bench {
 namespace {
 
+const std::string kScenarios = SIDESTEP_SOURCE_DIR "/scenarios";
+
 using Fields = std::vector<std::optional<double>>;
 
 CsvTable MakeTable(const std::vector<Fields>& rows) {
@@ -37,7 +39,7 @@ CsvTable Sample() {
 
 OpenLoopStatistics Compute(const CsvTable& table, RowFilter filter = RowFilter::kAllRows) {
   return ComputeOpenLoopStatistics(ReadOutcomes(table), filter,
-                                   MakeOpenLoopExperiment("wam_single_pillar"));
+                                   MakeOpenLoopExperiment("wam_single_pillar", kScenarios));
 }
 
 TEST(OpenLoopStatistics, CountFreeRowsPooledAndBySpeed) {
