@@ -25,51 +25,27 @@ std::string Between(const char* format, const Interval& interval, double scale =
          FiniteText(format, scale * interval.high) + "]";
 }
 
-struct Curves {
-  Series rate, cost;
-};
-
-// One point a speed.
-Curves MakeCurves(const std::vector<MatchedOutcomes>& rows, sdf::Knowledge knowledge) {
-  struct Sums {
-    int rows = 0, free = 0;
-    double gp_cost = 0;
-  };
-  std::map<double, Sums> by_speed;
-  for (const MatchedOutcomes& row : rows) {
-    const auto run = row.runs.find(knowledge);
-    if (run == row.runs.end()) continue;
-    Sums& sums = by_speed[row.speed_m_s];
-    ++sums.rows;
-    sums.free += run->second.is_free ? 1 : 0;
-    sums.gp_cost += run->second.gp_cost;
-  }
-  Curves curves;
-  for (const auto& [speed_m_s, sums] : by_speed) {
-    const Interval wilson = WilsonInterval(sums.free, sums.rows);
-    curves.rate.x.push_back(speed_m_s);
-    curves.rate.y.push_back(kPercent * sums.free / sums.rows);
-    curves.rate.low.push_back(kPercent * wilson.low);
-    curves.rate.high.push_back(kPercent * wilson.high);
-    curves.cost.x.push_back(speed_m_s);
-    curves.cost.y.push_back(sums.gp_cost / sums.rows);
-  }
-  curves.rate.color = curves.cost.color = static_cast<int>(knowledge);
-  return curves;
-}
-
+// Two curves a kind of knowledge, one point a speed.
 void AddCurves(Figure& figure, const std::vector<MatchedOutcomes>& rows, bool is_published) {
-  for (const sdf::Knowledge knowledge : sdf::kAllKnowledge) {
-    Curves curves = MakeCurves(rows, knowledge);
-    if (curves.rate.x.empty()) continue;
+  struct Curves {
+    Series rate, cost;
+  };
+  std::map<sdf::Knowledge, Curves> by_knowledge;
+  for (const FreeRate& at_speed : FreeRatesBySpeed(rows)) {
+    auto& [rate, cost] = by_knowledge[at_speed.knowledge];
+    rate.x.push_back(at_speed.speed_m_s);
+    rate.y.push_back(kPercent * at_speed.num_free / at_speed.num_rows);
+    cost.x.push_back(at_speed.speed_m_s);
+    cost.y.push_back(at_speed.mean_gp_cost);
+    if (is_published) continue;
+    rate.low.push_back(kPercent * at_speed.wilson.low);
+    rate.high.push_back(kPercent * at_speed.wilson.high);
+  }
+  for (auto& [knowledge, curves] : by_knowledge) {
     for (Series* series : {&curves.rate, &curves.cost}) {
-      if (is_published) {
-        series->style = Series::Style::kOpenPoints;
-        series->low.clear();
-        series->high.clear();
-      } else {
-        series->title = Words(knowledge);
-      }
+      series->color = static_cast<int>(knowledge);
+      if (is_published) series->style = Series::Style::kOpenPoints;
+      if (!is_published) series->title = Words(knowledge);
     }
     figure.panels[0].series.push_back(std::move(curves.rate));
     figure.panels[1].series.push_back(std::move(curves.cost));
@@ -181,36 +157,20 @@ void AddRates(HtmlPage& page, const OpenLoopStatistics& statistics) {
 void AddComparisons(HtmlPage& page, const OpenLoopStatistics& statistics) {
   std::vector<std::vector<std::string>> rows;
   for (const KnowledgeComparison& c : statistics.comparisons) {
-    const auto significant = [&](double (*p)(const SpeedComparison&)) {
-      const auto count = std::count_if(c.speeds.begin(), c.speeds.end(),
-                                       [p](const SpeedComparison& s) { return p(s) < 0.05; });
-      return Of(static_cast<int>(count), static_cast<int>(c.speeds.size()));
-    };
+    const int num_speeds = static_cast<int>(c.levels.size());
     rows.push_back(
         {Words(c.first) + " minus " + Words(c.second),
-         std::to_string(c.only_first_free) + " : " + std::to_string(c.only_second_free),
+         std::to_string(c.only_first) + " : " + std::to_string(c.only_second),
          FiniteText("{:+.1f}", kPercent * c.rate_difference) + " " +
              Between("{:.1f}", c.rate_interval, kPercent),
-         significant([](const SpeedComparison& s) { return s.mcnemar_p_holm; }),
+         Of(c.CountSignificantOutcomes(), num_speeds),
          FiniteText("{:+.2f}", c.median_cost_difference) + " " + Between("{:.2f}", c.cost_interval),
-         significant([](const SpeedComparison& s) { return s.all.p_holm; }),
-         significant([](const SpeedComparison& s) { return s.both_free.p_holm; })});
+         Of(c.CountSignificantCosts(&LevelComparison::all), num_speeds),
+         Of(c.CountSignificantCosts(&LevelComparison::both_succeed), num_speeds)});
   }
   page.Table({"matched by start, goal and speed", "only one free", "points of free rate",
               "McNemar, speeds", "median GP cost", "Wilcoxon, speeds", "of both free"},
              rows);
-}
-
-// Whether the smallest p that there is, all pairs differing in the same sense, survives Holm's
-// adjustment at some speed.
-bool CanBeSignificant(const OpenLoopStatistics& statistics) {
-  for (const KnowledgeComparison& comparison : statistics.comparisons) {
-    for (const SpeedComparison& speed : comparison.speeds) {
-      const double least_p = McNemarExactP(speed.num_rows, 0);
-      if (least_p * static_cast<double>(comparison.speeds.size()) < 0.05) return true;
-    }
-  }
-  return false;
 }
 
 void AddStatistics(HtmlPage& page, const std::vector<OpenLoopStatistics>& statistics) {
@@ -231,7 +191,8 @@ void AddStatistics(HtmlPage& page, const std::vector<OpenLoopStatistics>& statis
                    std::to_string(filtered.excluded_none_free) +
                    " in which no published kind of knowledge is free.");
     if (filtered.num_rows == 0) continue;
-    if (!CanBeSignificant(filtered)) {
+    if (std::none_of(filtered.comparisons.begin(), filtered.comparisons.end(),
+                     [](const KnowledgeComparison& c) { return c.CanBeSignificant(); })) {
       page.Paragraph(
           "With so few pairs at so many speeds, no single speed can reach p < 0.05 after "
           "the adjustment, whatever comes out: look at the intervals.");

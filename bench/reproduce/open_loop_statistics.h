@@ -4,6 +4,7 @@
 
 #include "sidestep/bench/reproduce/open_loop_experiment.h"
 #include "sidestep/bench/reproduce/open_loop_outcomes.h"
+#include "sidestep/bench/statistics/paired_comparison.h"
 #include "sidestep/bench/statistics/proportions.h"
 #include "sidestep/sdf/world_model.h"
 
@@ -18,35 +19,10 @@ struct FreeRate {
   double mean_gp_cost = 0;  ///< of all rows; NaN if one is not finite
 };
 
-/// GP costs of matched runs, first minus second.
-struct CostComparison {
-  int num_rows = 0;
-  int num_not_finite = 0;  ///< rows that could not be compared
-  double shift = 0;        ///< Hodges and Lehmann's; NaN without rows
-  double p = 1;            ///< Wilcoxon's signed ranks, exact
-  double p_holm = 1;       ///< adjusted over the speeds of the comparison
-};
-
-/// Two kinds of knowledge at one speed, matched by start and goal.
-struct SpeedComparison {
-  double speed_m_s = 0;
-  int num_rows = 0;
-  int only_first_free = 0, only_second_free = 0;
-  double mcnemar_p = 1, mcnemar_p_holm = 1;
-  CostComparison all, both_free;  ///< of all rows; of those in which both are collision-free
-};
-
-/// Two kinds of knowledge over all speeds. Rows of one start and goal resemble each other, so
-/// intervals (95 %) come from a bootstrap over starts and goals, and there is no pooled test.
-struct KnowledgeComparison {
+/// Two kinds of knowledge: success is to be collision-free, the cost is the GP cost; levels are
+/// speeds, clusters pairs of start and goal.
+struct KnowledgeComparison : PairedComparison {
   sdf::Knowledge first = sdf::Knowledge::kStatic, second = sdf::Knowledge::kStatic;
-  int num_rows = 0;
-  int only_first_free = 0, only_second_free = 0;
-  double rate_difference = 0;  ///< of the share of collision-free rows, first minus second
-  Interval rate_interval;
-  double median_cost_difference = 0;  ///< first minus second, of finite ones; NaN without any
-  Interval cost_interval;
-  std::vector<SpeedComparison> speeds;
 };
 
 /// Everything that a table of results says, under one filter.
@@ -58,8 +34,11 @@ struct OpenLoopStatistics {
   std::vector<KnowledgeComparison> comparisons;
 };
 
-/// Deterministic: the bootstrap has a fixed seed. A kind of knowledge is compared in the rows that
-/// have it. No rates and comparisons if no row is left.
+/// By knowledge, then by speed.
+std::vector<FreeRate> FreeRatesBySpeed(const std::vector<MatchedOutcomes>& rows);
+
+/// Deterministic. A kind of knowledge is compared in the rows that have it. No rates and
+/// comparisons if no row is left.
 OpenLoopStatistics ComputeOpenLoopStatistics(const std::vector<MatchedOutcomes>& rows,
                                              RowFilter filter,
                                              const OpenLoopExperiment& experiment);

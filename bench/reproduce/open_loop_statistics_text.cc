@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -12,8 +11,6 @@ namespace sidestep::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kSignificant = 0.05;
 
 Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 Json Bounds(const Interval& interval) { return {Number(interval.low), Number(interval.high)}; }
@@ -34,29 +31,29 @@ Json ToJson(const CostComparison& costs) {
           {"wilcoxon_p_holm", costs.p_holm}};
 }
 
-Json ToJson(const SpeedComparison& speed) {
-  return {{"speed_m_per_s", speed.speed_m_s},
+Json ToJson(const LevelComparison& speed) {
+  return {{"speed_m_per_s", speed.level},
           {"rows", speed.num_rows},
-          {"only_first_free", speed.only_first_free},
-          {"only_second_free", speed.only_second_free},
+          {"only_first_free", speed.only_first},
+          {"only_second_free", speed.only_second},
           {"mcnemar_p", speed.mcnemar_p},
           {"mcnemar_p_holm", speed.mcnemar_p_holm},
           {"gp_cost", ToJson(speed.all)},
-          {"gp_cost_where_both_free", ToJson(speed.both_free)}};
+          {"gp_cost_where_both_free", ToJson(speed.both_succeed)}};
 }
 
 Json ToJson(const KnowledgeComparison& comparison) {
   Json json = {{"first", ToString(comparison.first)},
                {"second", ToString(comparison.second)},
                {"rows", comparison.num_rows},
-               {"only_first_free", comparison.only_first_free},
-               {"only_second_free", comparison.only_second_free},
+               {"only_first_free", comparison.only_first},
+               {"only_second_free", comparison.only_second},
                {"free_rate_difference", comparison.rate_difference},
                {"free_rate_difference_bootstrap_95", Bounds(comparison.rate_interval)},
                {"median_gp_cost_difference", Number(comparison.median_cost_difference)},
                {"median_gp_cost_difference_bootstrap_95", Bounds(comparison.cost_interval)},
                {"by_speed", Json::array()}};
-  for (const SpeedComparison& speed : comparison.speeds) json["by_speed"].push_back(ToJson(speed));
+  for (const LevelComparison& speed : comparison.levels) json["by_speed"].push_back(ToJson(speed));
   return json;
 }
 
@@ -77,13 +74,6 @@ Json ToJson(const OpenLoopStatistics& statistics) {
     json["comparisons"].push_back(ToJson(comparison));
   }
   return json;
-}
-
-template <class P>
-int CountSignificant(const KnowledgeComparison& comparison, const P& p_holm) {
-  return static_cast<int>(
-      std::count_if(comparison.speeds.begin(), comparison.speeds.end(),
-                    [&](const SpeedComparison& speed) { return p_holm(speed) < kSignificant; }));
 }
 
 }  // namespace
@@ -108,16 +98,16 @@ std::string Describe(const OpenLoopStatistics& statistics) {
                         100 * rate.wilson.high);
   }
   for (const KnowledgeComparison& c : statistics.comparisons) {
-    const int num_speeds = static_cast<int>(c.speeds.size());
+    const int num_speeds = static_cast<int>(c.levels.size());
     text += fmt::format("  {} - {}\n", ToString(c.first), ToString(c.second));
     text += fmt::format(
         "    free    {:+8.1f} points [{:+.1f}, {:+.1f}]; McNemar p < 0.05 at {} of {} speeds\n",
         100 * c.rate_difference, 100 * c.rate_interval.low, 100 * c.rate_interval.high,
-        CountSignificant(c, [](const SpeedComparison& s) { return s.mcnemar_p_holm; }), num_speeds);
+        c.CountSignificantOutcomes(), num_speeds);
     text += fmt::format(
         "    GP cost {:+8.2f} median [{:+.2f}, {:+.2f}]; Wilcoxon p < 0.05 at {} of {}\n",
         c.median_cost_difference, c.cost_interval.low, c.cost_interval.high,
-        CountSignificant(c, [](const SpeedComparison& s) { return s.all.p_holm; }), num_speeds);
+        c.CountSignificantCosts(&LevelComparison::all), num_speeds);
   }
   return text;
 }

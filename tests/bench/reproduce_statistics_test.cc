@@ -63,26 +63,26 @@ TEST(OpenLoopStatistics, CompareRowsOfTheSameStartGoalAndSpeed) {
   ASSERT_EQ(statistics.comparisons.size(), 1u);
   const KnowledgeComparison& comparison = statistics.comparisons[0];
   EXPECT_EQ(comparison.first, sdf::Knowledge::kFullKnowledge) << "the one that knows more is first";
-  EXPECT_EQ(comparison.only_first_free, 2);
-  EXPECT_EQ(comparison.only_second_free, 1);
+  EXPECT_EQ(comparison.only_first, 2);
+  EXPECT_EQ(comparison.only_second, 1);
   EXPECT_DOUBLE_EQ(comparison.rate_difference, 1.0 / 6);
   EXPECT_LE(comparison.rate_interval.low, 1.0 / 6);
   EXPECT_GE(comparison.rate_interval.high, 1.0 / 6);
   // Costs differ by -5, -3, -4, -2, 10, -1.
   EXPECT_DOUBLE_EQ(comparison.median_cost_difference, -2.5);
-  ASSERT_EQ(comparison.speeds.size(), 2u);
-  const SpeedComparison& slow = comparison.speeds[0];
-  EXPECT_EQ(slow.only_first_free, 2);
-  EXPECT_EQ(slow.only_second_free, 0);
+  ASSERT_EQ(comparison.levels.size(), 2u);
+  const LevelComparison& slow = comparison.levels[0];
+  EXPECT_EQ(slow.only_first, 2);
+  EXPECT_EQ(slow.only_second, 0);
   EXPECT_DOUBLE_EQ(slow.mcnemar_p, 0.5);
   EXPECT_DOUBLE_EQ(slow.mcnemar_p_holm, 1);
   EXPECT_DOUBLE_EQ(slow.all.shift, -0.75) << "-5, -4.5, -4, 2.5, 3, 10";
   EXPECT_DOUBLE_EQ(slow.all.p, 1) << "ranks 1 and 2 against 3";
-  EXPECT_EQ(slow.both_free.num_rows, 0);
-  EXPECT_TRUE(std::isnan(slow.both_free.shift));
-  EXPECT_EQ(comparison.speeds[1].both_free.num_rows, 1);
-  EXPECT_DOUBLE_EQ(comparison.speeds[1].all.p, 0.25) << "three of one sign: 2 / 8";
-  EXPECT_DOUBLE_EQ(comparison.speeds[1].all.p_holm, 0.5);
+  EXPECT_EQ(slow.both_succeed.num_rows, 0);
+  EXPECT_TRUE(std::isnan(slow.both_succeed.shift));
+  EXPECT_EQ(comparison.levels[1].both_succeed.num_rows, 1);
+  EXPECT_DOUBLE_EQ(comparison.levels[1].all.p, 0.25) << "three of one sign: 2 / 8";
+  EXPECT_DOUBLE_EQ(comparison.levels[1].all.p_holm, 0.5);
 }
 
 TEST(OpenLoopStatistics, SayWhatThePublishedExclusionsLeaveOut) {
@@ -106,7 +106,7 @@ TEST(OpenLoopStatistics, CountCostsThatCannotBeCompared) {
       Compute(MakeTable({{1, 0.4, 0, 0, 10, {}}, {2, 0.4, 0, 0, 10, 4}, {3, 0.4, 0, {}, 10, 4}}));
   EXPECT_EQ(statistics.pooled[0].num_rows, 3);
   EXPECT_EQ(statistics.pooled[1].num_rows, 2) << "one row does not have this kind of knowledge";
-  const CostComparison& costs = statistics.comparisons.at(0).speeds.at(0).all;
+  const CostComparison& costs = statistics.comparisons.at(0).levels.at(0).all;
   EXPECT_EQ(costs.num_rows, 2);
   EXPECT_EQ(costs.num_not_finite, 1);
   EXPECT_EQ(costs.shift, -6);
