@@ -58,8 +58,6 @@ std::string Look(const Series& series) {
       return "with linespoints pt 7 ps 0.6 lw 2" + color;
     case Series::Style::kPlainLine:
       return "with lines lw 2" + color;
-    case Series::Style::kDashedLine:
-      return "with lines lw 2 dt 2" + color;
     case Series::Style::kOpenPoints:
       return "with points pt 6 ps 1.3 lw 1.5" + color;
   }

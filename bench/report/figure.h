@@ -8,10 +8,9 @@ namespace sidestep::bench {
 /// One curve of a panel.
 struct Series {
   enum class Style {
-    kLine,        ///< a line through its points, which are marked
-    kPlainLine,   ///< a line alone
-    kDashedLine,  ///< the same, dashed
-    kOpenPoints   ///< rings alone: what is compared with
+    kLine,       ///< a line through its points, which are marked
+    kPlainLine,  ///< a line alone
+    kOpenPoints  ///< rings alone: what is compared with
   };
   std::string title;  ///< for the key; empty: not listed
   Style style = Style::kLine;

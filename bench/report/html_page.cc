@@ -22,7 +22,6 @@ th { border-bottom: 2px solid #888; vertical-align: bottom; }
 th:first-child, td:first-child { text-align: left; }
 figure { margin: 1.5rem 0; } figure img { max-width: 100%; }
 figcaption { color: #555; font-size: 0.9rem; }
-pre { background: #f5f5f5; padding: 0.7rem; overflow-x: auto; font-size: 0.85rem; }
 )";
 
 // What HTML takes as it stands.
@@ -76,10 +75,6 @@ HtmlPage::HtmlPage(const std::string& title) {
 void HtmlPage::Heading(const std::string& text) { text_ += "<h2>" + Escape(text) + "</h2>\n"; }
 
 void HtmlPage::Paragraph(const std::string& text) { text_ += "<p>" + Escape(text) + "</p>\n"; }
-
-void HtmlPage::Preformatted(const std::string& text) {
-  text_ += "<pre>" + Escape(text) + "</pre>\n";
-}
 
 void HtmlPage::Table(const std::vector<std::string>& header,
                      const std::vector<std::vector<std::string>>& rows) {

@@ -13,7 +13,6 @@ class HtmlPage {
 
   void Heading(const std::string& text);
   void Paragraph(const std::string& text);
-  void Preformatted(const std::string& text);
   /// The first cell of a row is left-aligned, the others are numbers.
   void Table(const std::vector<std::string>& header,
              const std::vector<std::vector<std::string>>& rows);

@@ -8,6 +8,7 @@
 
 #include "sidestep/bench/report/html_page.h"
 #include "sidestep/bench/reproduce/published_columns.h"
+#include "sidestep/bench/reproduce/size_figure.h"
 #include "sidestep/bench/statistics.h"
 #include "sidestep/core/number_text.h"
 
@@ -47,20 +48,9 @@ std::vector<double> Collect(const std::vector<PredictionTimes>& predictions,
   return values;
 }
 
-// The field of the row with that many voxels; of several rows, the median.
 std::optional<double> Lookup(const std::optional<CsvTable>& table, int voxels,
                              const std::string& column) {
-  if (!table) return {};
-  const auto key = table->Find(kVoxelsColumn), value = table->Find(column);
-  if (!key || !value) return {};
-  std::vector<double> values;
-  for (std::size_t row = 0; row < table->num_rows(); ++row) {
-    if (table->At(row, *key) == voxels && table->At(row, *value)) {
-      values.push_back(*table->At(row, *value));
-    }
-  }
-  if (values.empty()) return {};
-  return Quantile(std::move(values), 0.5);
+  return table ? table->Lookup(kVoxelsColumn, voxels, column) : std::nullopt;
 }
 
 Summary Summarise(const char* words, const std::vector<double>& values_s) {
@@ -125,11 +115,31 @@ std::vector<std::string> RunCells(const char* words, const EpisodeResult& result
           FiniteText("{:.1f} ms", 1e3 * Quantile(result.times.at("cycle"), 0.5))};
 }
 
-const std::vector<std::string> kRunHeader = {"planner knows", "outcome", "least clearance",
-                                             "time to goal",  "GP cost", "fastest joint",
-                                             "median cycle"};
+// Tables, their header first: of the two runs, and of the predictions of a whole run.
+using Rows = std::vector<std::vector<std::string>>;
 
-std::string TextTable(const std::vector<std::vector<std::string>>& rows) {
+Rows RunRows(const ClosedLoopStudy& study) {
+  return {{"planner knows", "outcome", "least clearance", "time to goal", "GP cost",
+           "fastest joint", "median cycle"},
+          RunCells("execute and update", study.update),
+          RunCells("prediction", study.prediction)};
+}
+
+Rows WholeRunRows(const WholeRunTimes& times) {
+  Rows rows = {{"", "least", "median", "mean", "greatest"}};
+  for (const Summary& summary : SummariseWholeRun(times)) rows.push_back(Cells(summary));
+  for (const Summary& summary : kPublishedWholeRun) {
+    rows.push_back(Cells(summary));
+    rows.back()[0] = "published: " + rows.back()[0];
+  }
+  return rows;
+}
+
+void AddTable(HtmlPage& page, const Rows& rows) {
+  page.Table(rows.front(), {rows.begin() + 1, rows.end()});
+}
+
+std::string TextTable(const Rows& rows) {
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()), 0);
@@ -147,8 +157,8 @@ std::string TextTable(const std::vector<std::vector<std::string>>& rows) {
 }
 
 // Ours, and in brackets the published figure if there is one.
-std::vector<std::vector<std::string>> RateRows(const CsvTable& rates) {
-  std::vector<std::vector<std::string>> rows = {{"voxels a side"}};
+Rows RateRows(const CsvTable& rates) {
+  Rows rows = {{"voxels a side"}};
   for (const Rate& rate : kRates) rows[0].push_back(rate.words);
   for (std::size_t row = 0; row < rates.num_rows(); ++row) {
     rows.push_back({FiniteText("{:.0f}", rates.At(row, 0).value())});
@@ -224,52 +234,28 @@ Figure MakeJointsFigure(const ClosedLoopStudy& study) {
 }
 
 Figure MakeRatesFigure(const CsvTable& rates) {
-  Panel panel;
-  panel.y_label = "Hz";
-  panel.x_label = "voxels per side";
-  panel.log_y = true;
-  panel.title = "Rates on one core (rings: published)";
-  std::vector<Series> rings;
-  int color = 0;
+  std::vector<SizeCurve> curves;
   for (const Rate& rate : kRates) {
-    Series ours, theirs;
-    ours.title = rate.words;
-    theirs.style = Series::Style::kOpenPoints;
-    ours.color = theirs.color = color++;
+    SizeCurve& curve = curves.emplace_back();
+    curve.words = rate.words;
     const auto their_column = rates.Find(rate.published);
     for (std::size_t row = 0; row < rates.num_rows(); ++row) {
       const double voxels = rates.At(row, 0).value();
-      ours.x.push_back(voxels);
-      ours.y.push_back(rates.At(row, rates.Find(rate.column).value()).value());
+      curve.voxels.push_back(voxels);
+      curve.y.push_back(rates.At(row, rates.Find(rate.column).value()).value());
       if (!their_column || !rates.At(row, *their_column)) continue;
-      theirs.x.push_back(voxels);
-      theirs.y.push_back(*rates.At(row, *their_column));
+      curve.published_voxels.push_back(voxels);
+      curve.published_y.push_back(*rates.At(row, *their_column));
     }
-    panel.series.push_back(std::move(ours));
-    if (!theirs.x.empty()) rings.push_back(std::move(theirs));
   }
-  if (rings.empty()) panel.title = "Rates on one core";
-  panel.series.insert(panel.series.end(), rings.begin(), rings.end());
-  Figure figure;
-  figure.panels = {std::move(panel)};
-  figure.panel_width_px = 720;
-  figure.panel_height_px = 520;
-  return figure;
+  return MakeSizeFigure("Rates on one core", "Hz", curves);
 }
 
 std::string DescribeClosedLoop(const ClosedLoopStudy& study, const PublishedRates& published) {
-  std::string text = TextTable({kRunHeader, RunCells("execute and update", study.update),
-                                RunCells("prediction", study.prediction)}) +
-                     "\nrates (published)\n" +
+  std::string text = TextTable(RunRows(study)) + "\nrates (published)\n" +
                      TextTable(RateRows(MakeRatesTable(study, published))) +
                      "\n435 predictions in each of five scenes, 96 voxels a side [ms]\n";
-  std::vector<std::vector<std::string>> rows = {{"", "least", "median", "mean", "greatest"}};
-  for (const Summary& summary : SummariseWholeRun(study.whole_run)) rows.push_back(Cells(summary));
-  for (const Summary& summary : kPublishedWholeRun) {
-    rows.push_back(Cells(summary));
-    rows.back()[0] = "published: " + rows.back()[0];
-  }
-  return text + TextTable(rows);
+  return text + TextTable(WholeRunRows(study.whole_run));
 }
 
 std::string MakeClosedLoopPage(const ClosedLoopOptions& options, const ClosedLoopStudy& study,
@@ -283,8 +269,7 @@ std::string MakeClosedLoopPage(const ClosedLoopOptions& options, const ClosedLoo
       FiniteText("{:g} m/s", options.speed_m_s) +
       ". The loop is this product's own: predictions hold for the right moments, plans take effect "
       "after their latency, and a tracker within the arm's limits follows them.");
-  page.Table(kRunHeader, {RunCells("execute and update", study.update),
-                          RunCells("prediction", study.prediction)});
+  AddTable(page, RunRows(study));
   if (!joints_svg.empty()) {
     page.Picture(joints_svg,
                  "Measured joint positions and velocities, execute and update (left) "
@@ -299,20 +284,13 @@ std::string MakeClosedLoopPage(const ClosedLoopOptions& options, const ClosedLoo
       "time of making the field of one later step. In brackets and as rings the stored figures of "
       "the authors, of another machine.");
   if (!rates_svg.empty()) page.Picture(rates_svg, "Rates over the size of the grid.");
-  const auto rates = RateRows(MakeRatesTable(study, published));
-  page.Table(rates.front(), {rates.begin() + 1, rates.end()});
+  AddTable(page, RateRows(MakeRatesTable(study, published)));
   page.Heading("The predictions of a whole run");
   page.Paragraph(
       "Each step from the second on predicts the fields of all the steps that remain: 435 in a "
       "run, "
       "in each of the five field scenes, at 96 voxels a side. Times in ms.");
-  std::vector<std::vector<std::string>> rows;
-  for (const Summary& summary : SummariseWholeRun(study.whole_run)) rows.push_back(Cells(summary));
-  for (const Summary& summary : kPublishedWholeRun) {
-    rows.push_back(Cells(summary));
-    rows.back()[0] = "published: " + rows.back()[0];
-  }
-  page.Table({"", "least", "median", "mean", "greatest"}, rows);
+  AddTable(page, WholeRunRows(study.whole_run));
   return page.ToText();
 }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sidestep/bench/statistics.h"
 #include "sidestep/core/csv.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/utf8.h"
@@ -59,6 +60,18 @@ std::optional<std::size_t> CsvTable::Find(const std::string& column) const {
     if (columns_[c] == column) return c;
   }
   return {};
+}
+
+std::optional<double> CsvTable::Lookup(const std::string& key_column, double key,
+                                       const std::string& column) const {
+  const auto key_index = Find(key_column), index = Find(column);
+  if (!key_index || !index) return {};
+  std::vector<double> values;
+  for (const auto& row : rows_) {
+    if (row[*key_index] == key && row[*index]) values.push_back(*row[*index]);
+  }
+  if (values.empty()) return {};
+  return Quantile(std::move(values), 0.5);
 }
 
 void CsvTable::AddRow(std::vector<std::optional<double>> row) {

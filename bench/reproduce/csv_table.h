@@ -26,6 +26,10 @@ class CsvTable {
 
   std::size_t num_rows() const { return rows_.size(); }
   std::optional<double> At(std::size_t row, std::size_t column) const { return rows_[row][column]; }
+  /// The field of `column` in the row whose `key_column` is `key`; of several such rows, the
+  /// median. Nothing if there is none, or no such column.
+  std::optional<double> Lookup(const std::string& key_column, double key,
+                               const std::string& column) const;
   /// @throws std::invalid_argument for another number of fields than columns.
   void AddRow(std::vector<std::optional<double>> row);
 

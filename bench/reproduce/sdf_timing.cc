@@ -7,6 +7,7 @@
 
 #include "sidestep/bench/report/html_page.h"
 #include "sidestep/bench/reproduce/published_columns.h"
+#include "sidestep/bench/reproduce/size_figure.h"
 #include "sidestep/bench/statistics.h"
 #include "sidestep/core/number_text.h"
 
@@ -51,13 +52,7 @@ double Get(const CsvTable& table, std::size_t row, const std::string& column) {
 // The published figure for a grid of the same size.
 std::optional<double> Published(const std::optional<CsvTable>& published, double voxels,
                                 const std::string& column) {
-  if (!published || column.empty()) return {};
-  const auto key = published->Find(kVoxelsColumn), value = published->Find(column);
-  if (!key || !value) return {};
-  for (std::size_t row = 0; row < published->num_rows(); ++row) {
-    if (published->At(row, *key) == voxels) return published->At(row, *value);
-  }
-  return {};
+  return published ? published->Lookup(kVoxelsColumn, voxels, column) : std::nullopt;
 }
 
 std::string FormatTime(double ms) {
@@ -160,41 +155,25 @@ CsvTable MakeSdfTimingTable(const std::vector<SdfTimingSize>& sizes) {
 }
 
 Figure MakeSdfTimingFigure(const CsvTable& ours, const std::optional<CsvTable>& published) {
-  Panel panel;
-  panel.title = "Cost of a field on one core";
-  if (published) panel.title += " (rings: published)";
-  panel.x_label = "voxels per side";
-  panel.y_label = "ms";
-  panel.log_y = true;
-  std::vector<Series> rings;
-  int color = 0;
+  std::vector<SizeCurve> curves;
   const auto add = [&](const char* measure, const char* words, const char* their_column) {
-    Series curve, theirs;
-    curve.title = words;
-    theirs.style = Series::Style::kOpenPoints;
-    curve.color = theirs.color = color++;
+    SizeCurve& curve = curves.emplace_back();
+    curve.words = words;
     for (std::size_t row = 0; row < ours.num_rows(); ++row) {
       const double voxels = Get(ours, row, kVoxelsColumn);
-      curve.x.push_back(voxels);
+      curve.voxels.push_back(voxels);
       curve.y.push_back(Get(ours, row, Name(measure, "median")));
       curve.low.push_back(Get(ours, row, Name(measure, "q10")));
       curve.high.push_back(Get(ours, row, Name(measure, "q90")));
-      if (const auto value = Published(published, voxels, their_column)) {
-        theirs.x.push_back(voxels);
-        theirs.y.push_back(*value);
-      }
+      const auto value = Published(published, voxels, their_column);
+      if (!value) continue;
+      curve.published_voxels.push_back(voxels);
+      curve.published_y.push_back(*value);
     }
-    panel.series.push_back(std::move(curve));
-    if (!theirs.x.empty()) rings.push_back(std::move(theirs));
   };
   add(kInit, "initialisation", kPublishedInit);
   for (const Measure& measure : kMeasures) add(measure.name, measure.words, measure.published);
-  panel.series.insert(panel.series.end(), rings.begin(), rings.end());
-  Figure figure;
-  figure.panels = {std::move(panel)};
-  figure.panel_width_px = 720;
-  figure.panel_height_px = 520;
-  return figure;
+  return MakeSizeFigure("Cost of a field on one core", "ms", curves);
 }
 
 std::string DescribeSdfTiming(const CsvTable& ours, const std::optional<CsvTable>& published) {
