@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/joined.h"
 #include "sidestep/scenarios/scenario.h"
 
 namespace sidestep::cli {
@@ -44,11 +45,8 @@ std::string FindScenario(const std::string& scenario, const DataPaths& paths) {
   const fs::path file = fs::path(paths.scenarios) / (scenario + ".yaml");
   std::error_code error;
   if (fs::exists(file, error)) return file.string();
-  std::string list;
-  for (const std::string& name : scenarios::ScenarioNames(paths.scenarios)) {
-    list += (list.empty() ? "" : ", ") + name;
-  }
-  throw InputError("SCENARIO", "'" + scenario + "' is no scenario (known: " + list +
+  throw InputError("SCENARIO", "'" + scenario + "' is no scenario (known: " +
+                                   Joined(scenarios::ScenarioNames(paths.scenarios)) +
                                    "; a path needs a / or ends in .yaml)");
 }
 

@@ -8,8 +8,10 @@
 #include <stdexcept>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/joined.h"
 
 namespace sidestep::cli {
+
 namespace {
 
 constexpr int kMaxSpeeds = 10000;
@@ -93,6 +95,14 @@ std::vector<sdf::Knowledge> ParseKnowledge(const std::string& option, const std:
     }
   }
   return kinds;
+}
+
+void CheckWords(const std::string& option, const std::vector<std::string>& words,
+                const std::vector<std::string>& known) {
+  for (const std::string& word : words) {
+    if (std::find(known.begin(), known.end(), word) != known.end()) continue;
+    throw InputError(option, "must be one of " + Joined(known) + ", is '" + word + "'");
+  }
 }
 
 }  // namespace sidestep::cli

@@ -21,4 +21,8 @@ std::vector<int> ParseNumbers(const std::string& option, const std::string& text
 /// Kinds of knowledge, comma-separated, none twice.
 std::vector<sdf::Knowledge> ParseKnowledge(const std::string& option, const std::string& text);
 
+/// Complains unless every word is one of the known.
+void CheckWords(const std::string& option, const std::vector<std::string>& words,
+                const std::vector<std::string>& known);
+
 }  // namespace sidestep::cli

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,10 +7,10 @@
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/data_paths.h"
 #include "sidestep/cli/number_range.h"
+#include "sidestep/cli/option_lists.h"
 #include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/reproduce.h"
 #include "sidestep/core/atomic_file.h"
-#include "sidestep/core/input_error.h"
 
 namespace sidestep::cli {
 namespace {
@@ -25,13 +24,7 @@ struct SdfTimingCommand {
 constexpr int kMostVoxels = 512;
 
 int Run(const SdfTimingCommand& command) {
-  for (const std::string& scene : command.options.scenes) {
-    const std::vector<std::string> known = bench::FieldSceneNames();
-    if (std::find(known.begin(), known.end(), scene) != known.end()) continue;
-    std::string list;
-    for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
-    throw InputError("--scenes", "must be of " + list + ", is '" + scene + "'");
-  }
+  CheckWords("--scenes", command.options.scenes, bench::FieldSceneNames());
   std::optional<bench::CsvTable> published;
   if (!command.published.empty())
     published = bench::CsvTable::Read(command.published, {bench::kVoxelsColumn});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "sidestep/cli/option_lists.h"
 #include "sidestep/cli/shell_quote.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/scenarios/scenario.h"
@@ -32,16 +33,6 @@ std::vector<bench::Factors> Cross(const std::vector<bench::Factors>& cases,
     }
   }
   return crossed;
-}
-
-void CheckWords(const char* flag, const std::vector<std::string>& words,
-                const std::vector<std::string>& known) {
-  for (const std::string& word : words) {
-    if (std::find(known.begin(), known.end(), word) != known.end()) continue;
-    std::string list;
-    for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
-    throw InputError(flag, "must be one of " + list + ", is '" + word + "'");
-  }
 }
 
 // The values of a factor that a flag lists and that a setting may fix instead.

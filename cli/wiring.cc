@@ -6,6 +6,7 @@
 
 #include "sidestep/bench/resolve.h"
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/joined.h"
 #include "sidestep/planner/registry.h"
 #include "sidestep/scenarios/variations.h"
 #include "sidestep/sdf/prediction/registry.h"
@@ -40,9 +41,7 @@ void Override(scenarios::Scenario& scenario, const Overrides& overrides) {
 void CheckWord(const scenarios::Scenario& scenario, const std::string& key, const std::string& word,
                const std::vector<std::string>& known, const char* flag = nullptr) {
   if (std::find(known.begin(), known.end(), word) != known.end()) return;
-  std::string list;
-  for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
-  const std::string why = "must be one of " + list + ", is '" + word + "'";
+  const std::string why = "must be one of " + Joined(known) + ", is '" + word + "'";
   if (flag != nullptr) throw InputError(flag, why);
   throw scenarios::WrongValue(scenario, key, why);
 }

@@ -1,6 +1,7 @@
 #include "sidestep/core/csv.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <set>
@@ -16,6 +17,7 @@ namespace sidestep {
 namespace {
 
 constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{1} << 30;
+constexpr std::size_t kMaxShown = 40;  // bytes of a broken field in a message
 
 std::string Field(const std::string& bytes) {
   const std::string text = EscapeInvalidUtf8(bytes);
@@ -90,6 +92,18 @@ void CsvWriter::AddLine(const std::vector<std::string>& fields) {
 }
 
 std::string CsvNumber(double value) { return std::isfinite(value) ? ShortestText(value) : ""; }
+
+double ParseCsvNumber(const std::string& field, const std::string& name, int line,
+                      const std::string& column) {
+  double value = 0;
+  const char* const end = field.data() + field.size();
+  const auto [parsed_to, error] = std::from_chars(field.data(), end, value);
+  if (error != std::errc() || parsed_to != end || !std::isfinite(value)) {
+    throw InputError(name, line, column,
+                     "must be a finite number, is '" + Utf8Prefix(field, kMaxShown) + "'");
+  }
+  return value;
+}
 
 CsvFile ParseCsv(const std::string& bytes, const std::string& name) {
   const std::string text = DecodeText(bytes, name);

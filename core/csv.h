@@ -25,6 +25,11 @@ class CsvWriter {
 /// A number as a field: the fewest digits that give it back; empty if it is not finite.
 std::string CsvNumber(double value);
 
+/// A field as a number.
+/// @throws InputError `NAME:LINE: COLUMN: must be a finite number, is 'FIELD'`.
+double ParseCsvNumber(const std::string& field, const std::string& name, int line,
+                      const std::string& column);
+
 struct CsvRow {
   int line = 0;  ///< of the file, from 1
   std::vector<std::string> fields;

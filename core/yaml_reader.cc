@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/joined.h"
 #include "sidestep/core/text_file.h"
 #include "sidestep/core/utf8.h"
 
@@ -383,9 +384,7 @@ std::string YamlReader::GetChoice(const std::string& key,
                                   const std::vector<std::string>& choices) const {
   const std::string value = GetString(key);
   if (std::find(choices.begin(), choices.end(), value) == choices.end()) {
-    std::string list;
-    for (const std::string& choice : choices) list += (list.empty() ? "" : ", ") + choice;
-    Fail(key, "must be one of " + list + ", is " + Quote(value));
+    Fail(key, "must be one of " + Joined(choices) + ", is " + Quote(value));
   }
   return value;
 }
@@ -456,9 +455,7 @@ void YamlReader::CheckNoUnknownKeys() const {
   for (const auto& entry : node_->yaml) {
     const std::string& key = entry.first.Scalar();
     if (node_->known.count(key) == 0) {
-      std::string list;
-      for (const std::string& name : node_->known) list += (list.empty() ? "" : ", ") + name;
-      const std::string why = "is not a known key (known here: " + list + ")";
+      const std::string why = "is not a known key (known here: " + Joined(node_->known) + ")";
       node_->BlameSetting(node_->PathOf(key), why);
       throw InputError(node_->file, Node::LineOf(entry.first, node_->line), node_->PathOf(key),
                        why);

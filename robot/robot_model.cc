@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/joined.h"
 #include "sidestep/core/yaml_reader.h"
 
 namespace sidestep::robot {
@@ -147,10 +148,8 @@ RobotModel RobotModel::Load(const std::string& models_dir, const std::string& na
                             const Pose& X_WB) {
   const std::vector<std::string> names = ListNames(models_dir);
   if (std::find(names.begin(), names.end(), name) == names.end()) {
-    std::string known;
-    for (const std::string& other : names) known += (known.empty() ? "" : ", ") + other;
     throw InputError(models_dir, "holds no robot '" + name +
-                                     "' (known: " + (known.empty() ? "none" : known) + ")");
+                                     "' (known: " + (names.empty() ? "none" : Joined(names)) + ")");
   }
   const std::string path = models_dir + "/" + name + "/robot.yaml";
   RobotModel model = FromFile(path, X_WB);

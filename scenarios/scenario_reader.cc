@@ -7,6 +7,7 @@
 #include <set>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/joined.h"
 #include "sidestep/core/utf8.h"
 #include "sidestep/core/yaml_reader.h"
 #include "sidestep/scenarios/scenario.h"
@@ -131,11 +132,9 @@ void ReadStaticBoxes(const YamlReader& top, Scenario& scenario, std::set<std::st
 std::string ReadKind(const YamlReader& map, const std::string& key, const YamlReader& parent,
                      const std::vector<std::string>& kinds) {
   const std::vector<std::string> keys = map.Keys();
-  std::string list;
-  for (const std::string& kind : kinds) list += (list.empty() ? "" : ", ") + kind;
-  if (keys.size() != 1) parent.Fail(key, "must hold exactly one of " + list);
+  if (keys.size() != 1) parent.Fail(key, "must hold exactly one of " + Joined(kinds));
   if (std::find(kinds.begin(), kinds.end(), keys[0]) == kinds.end()) {
-    map.Fail(keys[0], "is not a known kind (known: " + list + ")");
+    map.Fail(keys[0], "is not a known kind (known: " + Joined(kinds) + ")");
   }
   return keys[0];
 }
@@ -430,9 +429,8 @@ void Settle(YamlReader& top, const Settings& settings, Scenario& scenario) {
     const std::string chosen = setting == settings.end() ? choice.chosen : setting->second;
     const std::vector<std::string> options = choice.options.Keys();
     if (std::find(options.begin(), options.end(), chosen) == options.end()) {
-      std::string list;
-      for (const std::string& option : options) list += (list.empty() ? "" : ", ") + option;
-      throw InputError("--set " + name, "must be one of " + list + ", is '" + chosen + "'");
+      throw InputError("--set " + name,
+                       "must be one of " + Joined(options) + ", is '" + chosen + "'");
     }
     top.Replace(choice.options.GetMap(chosen));
     scenario.choices[name] = chosen;

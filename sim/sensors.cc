@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/joined.h"
 #include "sidestep/sim/delayed_sensor.h"
 
 namespace sidestep::sim {
@@ -69,9 +70,8 @@ std::unique_ptr<robot::Sensor> MakeSensor(const scenarios::Scenario& scenario, c
     if (is_prompt) return sensor;
     return std::make_unique<DelayedSensor>(std::move(sensor), settings, world, scenario.seed);
   }
-  std::string known;
-  for (const std::string& name : SensorNames()) known += (known.empty() ? "" : ", ") + name;
-  Fail(scenario, "name", "is not a known sensor (known: " + known + "): '" + settings.name + "'");
+  Fail(scenario, "name",
+       "is not a known sensor (known: " + Joined(SensorNames()) + "): '" + settings.name + "'");
 }
 
 }  // namespace sidestep::sim

@@ -1,28 +1,13 @@
 #include "sidestep/bench/reproduce/csv_table.h"
 
-#include <charconv>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 
 #include "sidestep/bench/statistics.h"
 #include "sidestep/core/csv.h"
 #include "sidestep/core/input_error.h"
-#include "sidestep/core/utf8.h"
 
 namespace sidestep::bench {
-namespace {
-
-constexpr std::size_t kMaxShown = 40;  // bytes of a broken field in a message
-
-std::optional<double> ParseNumber(const std::string& text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
-  return value;
-}
-
-}  // namespace
 
 CsvTable CsvTable::Read(const std::string& path, const std::vector<std::string>& required) {
   const CsvFile file = ReadCsv(path);
@@ -34,11 +19,8 @@ CsvTable CsvTable::Read(const std::string& path, const std::vector<std::string>&
     std::vector<std::optional<double>> row;
     for (std::size_t c = 0; c < line.fields.size(); ++c) {
       const std::string& field = line.fields[c];
-      row.push_back(ParseNumber(field));
-      if (!row.back() && !field.empty()) {
-        throw InputError(path, line.line, table.columns_[c],
-                         "must be a finite number, is '" + Utf8Prefix(field, kMaxShown) + "'");
-      }
+      row.emplace_back();
+      if (!field.empty()) row.back() = ParseCsvNumber(field, path, line.line, table.columns_[c]);
     }
     table.rows_.push_back(std::move(row));
   }

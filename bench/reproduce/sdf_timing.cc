@@ -9,6 +9,7 @@
 #include "sidestep/bench/reproduce/published_columns.h"
 #include "sidestep/bench/reproduce/size_figure.h"
 #include "sidestep/bench/statistics.h"
+#include "sidestep/core/joined.h"
 #include "sidestep/core/number_text.h"
 
 namespace sidestep::bench {
@@ -204,9 +205,7 @@ std::string MakeSdfTimingPage(const SdfTimingOptions& options, const CsvTable& o
       "predicted map (full computation), or composed of the fields of the static part and the "
       "objects: as a grid (dense, as in the paper), as a grid from that of the moment before "
       "(incremental), or when it is asked (lazy).");
-  std::string scenes;
-  for (const std::string& name : options.scenes) scenes += (scenes.empty() ? "" : ", ") + name;
-  page.Paragraph("Scenes: " + scenes +
+  page.Paragraph("Scenes: " + Joined(options.scenes) +
                  ". Times are CPU times of one core, medians over scenes, "
                  "moments and " +
                  std::to_string(options.repeats) + " repeats.");

@@ -166,7 +166,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"NoSuchTable", {"panda_hsr", "--published", "/nowhere.csv"}, "/nowhere.csv"},
         Mistake{"NoSuchScene",
                 {"sdf_timing", "--scenes", "field_of_dreams"},
-                "--scenes: must be of field_one_box"},
+                "--scenes: must be one of field_one_box"},
         Mistake{"SizeIsTooLarge", {"sdf_timing", "--sizes", "4096"}, "--sizes"},
         Mistake{
             "NoSuchRates", {"closed_loop", "--published-loops", "/nowhere.csv"}, "/nowhere.csv"},
