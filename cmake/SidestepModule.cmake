@@ -33,6 +33,7 @@ function(sidestep_module name)
     sidestep_${name}
     PUBLIC ${ARG_DEPENDS}
     PRIVATE $<BUILD_INTERFACE:sidestep_warnings> ${ARG_PRIVATE_DEPENDS})
+  sidestep_use_precompiled_headers(sidestep_${name} sidestep_precompiled_module)
   set_property(GLOBAL APPEND PROPERTY SIDESTEP_MODULES sidestep_${name})
   install(
     TARGETS sidestep_${name}
@@ -66,12 +67,17 @@ endfunction()
 # Everything that the thread sanitizer has to see: `./dev test --all` builds it in the tsan preset.
 add_custom_target(threaded_tests)
 
+# The tests of the modules, without those of the whole program: `./dev test --sanitize` builds them
+# in the asan preset.
+add_custom_target(unit_tests)
+
 # sidestep_test(<folder>/<name>_test [SOURCES <further file>...] DEPENDS <target>...
 #               [SLOW | THREADED])
 #
 # Builds tests/<folder>/<name>_test.cc; ctest runs each of its cases. SLOW cases carry the label
 # "slow", which `./dev test` leaves out and `./dev test --all` runs. THREADED ones, which start
 # threads, carry the label "threaded", and `./dev test --all` runs them under the thread sanitizer.
+# Other cases in the folder of a module carry the label "unit".
 function(sidestep_test path)
   cmake_parse_arguments(ARG "SLOW;THREADED" "" "SOURCES;DEPENDS" ${ARGN})
   string(REPLACE "/" "_" target ${path})
@@ -80,12 +86,20 @@ function(sidestep_test path)
   target_compile_definitions(${target} PRIVATE SIDESTEP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_link_libraries(${target} PRIVATE ${ARG_DEPENDS} GTest::gtest_main GTest::gmock
                                           sidestep_warnings)
+  target_compile_features(${target} PRIVATE cxx_std_20)
+  sidestep_use_precompiled_headers(${target} sidestep_precompiled_test)
+  get_filename_component(folder ${path} DIRECTORY)
   set(properties TIMEOUT 600)
   if(ARG_SLOW)
     list(APPEND properties LABELS slow)
   elseif(ARG_THREADED)
     list(APPEND properties LABELS threaded)
     add_dependencies(threaded_tests ${target})
+  elseif(TARGET sidestep::${folder})
+    list(APPEND properties LABELS unit)
+  endif()
+  if(TARGET sidestep::${folder} AND NOT ARG_SLOW)
+    add_dependencies(unit_tests ${target})
   endif()
   gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60 DISCOVERY_MODE PRE_TEST
                        PROPERTIES ${properties})
