@@ -74,13 +74,7 @@ void ShowProgress(int done, int all) {
 }
 
 void PrintVerdicts(const bench::OpenLoopStudy& study) {
-  Print("{:<20} {:>16} {:>16} {:>16} {:>14}\n", "planner knows", "collision-free", "truly free",
-        "truly free", "mean GP cost");
-  Print("{:<20} {:>16} {:>16} {:>16}\n", "", "as published", "at the states", "all along");
-  for (const bench::VerdictCounts& counts : bench::CountVerdicts(study)) {
-    Print("{:<20} {:8} of {:4} {:16} {:16} {:14.4f}\n", ToString(counts.knowledge), counts.free,
-          counts.num_rows, counts.truly_free_states, counts.truly_free, counts.mean_gp_cost);
-  }
+  Print("{}", bench::ToText(bench::MakeVerdictTable(study)));
   Print(
       "(truly free: of the collision-free, those whose spheres clear the exact boxes, which stand\n"
       "where they were meant to and move between the states)\n");

@@ -76,18 +76,15 @@ void HtmlPage::Heading(const std::string& text) { text_ += "<h2>" + Escape(text)
 
 void HtmlPage::Paragraph(const std::string& text) { text_ += "<p>" + Escape(text) + "</p>\n"; }
 
-void HtmlPage::Table(const std::vector<std::string>& header,
-                     const std::vector<std::vector<std::string>>& rows) {
-  const auto add = [this](const std::vector<std::string>& cells, const std::string& tag) {
-    text_ += "<tr>";
-    for (const std::string& cell : cells) {
-      text_ += "<" + tag + ">" + Escape(cell) + "</" + tag + ">";
-    }
-    text_ += "</tr>\n";
-  };
+void HtmlPage::Table(const TextTable& table) {
   text_ += "<table>\n";
-  add(header, "th");
-  for (const std::vector<std::string>& row : rows) add(row, "td");
+  std::string tag = "th";
+  for (const std::vector<std::string>& row : table) {
+    text_ += "<tr>";
+    for (const std::string& cell : row) text_ += "<" + tag + ">" + Escape(cell) + "</" + tag + ">";
+    text_ += "</tr>\n";
+    tag = "td";
+  }
   text_ += "</table>\n";
 }
 

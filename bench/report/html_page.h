@@ -1,7 +1,8 @@
 #pragma once
 
 #include <string>
-#include <vector>
+
+#include "sidestep/bench/report/table.h"
 
 namespace sidestep::bench {
 
@@ -13,9 +14,7 @@ class HtmlPage {
 
   void Heading(const std::string& text);
   void Paragraph(const std::string& text);
-  /// The first cell of a row is left-aligned, the others are numbers.
-  void Table(const std::vector<std::string>& header,
-             const std::vector<std::vector<std::string>>& rows);
+  void Table(const TextTable& table);
   /// Puts a copy of an SVG file into the page. @throws InputError if it cannot be read.
   void Picture(const std::string& svg_path, const std::string& caption);
 

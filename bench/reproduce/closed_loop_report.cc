@@ -115,18 +115,15 @@ std::vector<std::string> RunCells(const char* words, const EpisodeResult& result
           FiniteText("{:.1f} ms", 1e3 * Quantile(result.times.at("cycle"), 0.5))};
 }
 
-// Tables, their header first: of the two runs, and of the predictions of a whole run.
-using Rows = std::vector<std::vector<std::string>>;
-
-Rows RunRows(const ClosedLoopStudy& study) {
+TextTable RunRows(const ClosedLoopStudy& study) {
   return {{"planner knows", "outcome", "least clearance", "time to goal", "GP cost",
            "fastest joint", "median cycle"},
           RunCells("execute and update", study.update),
           RunCells("prediction", study.prediction)};
 }
 
-Rows WholeRunRows(const WholeRunTimes& times) {
-  Rows rows = {{"", "least", "median", "mean", "greatest"}};
+TextTable WholeRunRows(const WholeRunTimes& times) {
+  TextTable rows = {{"", "least", "median", "mean", "greatest"}};
   for (const Summary& summary : SummariseWholeRun(times)) rows.push_back(Cells(summary));
   for (const Summary& summary : kPublishedWholeRun) {
     rows.push_back(Cells(summary));
@@ -135,30 +132,9 @@ Rows WholeRunRows(const WholeRunTimes& times) {
   return rows;
 }
 
-void AddTable(HtmlPage& page, const Rows& rows) {
-  page.Table(rows.front(), {rows.begin() + 1, rows.end()});
-}
-
-std::string TextTable(const Rows& rows) {
-  std::vector<std::size_t> widths;
-  for (const auto& row : rows) {
-    widths.resize(std::max(widths.size(), row.size()), 0);
-    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
-  }
-  std::string text;
-  for (const auto& row : rows) {
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      const std::string padding(widths[c] - row[c].size(), ' ');
-      text += c == 0 ? row[c] + padding : "  " + padding + row[c];
-    }
-    text += '\n';
-  }
-  return text;
-}
-
 // Ours, and in brackets the published figure if there is one.
-Rows RateRows(const CsvTable& rates) {
-  Rows rows = {{"voxels a side"}};
+TextTable RateRows(const CsvTable& rates) {
+  TextTable rows = {{"voxels a side"}};
   for (const Rate& rate : kRates) rows[0].push_back(rate.words);
   for (std::size_t row = 0; row < rates.num_rows(); ++row) {
     rows.push_back({FiniteText("{:.0f}", rates.At(row, 0).value())});
@@ -252,10 +228,10 @@ Figure MakeRatesFigure(const CsvTable& rates) {
 }
 
 std::string DescribeClosedLoop(const ClosedLoopStudy& study, const PublishedRates& published) {
-  std::string text = TextTable(RunRows(study)) + "\nrates (published)\n" +
-                     TextTable(RateRows(MakeRatesTable(study, published))) +
+  std::string text = ToText(RunRows(study)) + "\nrates (published)\n" +
+                     ToText(RateRows(MakeRatesTable(study, published))) +
                      "\n435 predictions in each of five scenes, 96 voxels a side [ms]\n";
-  return text + TextTable(WholeRunRows(study.whole_run));
+  return text + ToText(WholeRunRows(study.whole_run));
 }
 
 std::string MakeClosedLoopPage(const ClosedLoopOptions& options, const ClosedLoopStudy& study,
@@ -269,7 +245,7 @@ std::string MakeClosedLoopPage(const ClosedLoopOptions& options, const ClosedLoo
       FiniteText("{:g} m/s", options.speed_m_s) +
       ". The loop is this product's own: predictions hold for the right moments, plans take effect "
       "after their latency, and a tracker within the arm's limits follows them.");
-  AddTable(page, RunRows(study));
+  page.Table(RunRows(study));
   if (!joints_svg.empty()) {
     page.Picture(joints_svg,
                  "Measured joint positions and velocities, execute and update (left) "
@@ -284,13 +260,13 @@ std::string MakeClosedLoopPage(const ClosedLoopOptions& options, const ClosedLoo
       "time of making the field of one later step. In brackets and as rings the stored figures of "
       "the authors, of another machine.");
   if (!rates_svg.empty()) page.Picture(rates_svg, "Rates over the size of the grid.");
-  AddTable(page, RateRows(MakeRatesTable(study, published)));
+  page.Table(RateRows(MakeRatesTable(study, published)));
   page.Heading("The predictions of a whole run");
   page.Paragraph(
       "Each step from the second on predicts the fields of all the steps that remain: 435 in a "
       "run, "
       "in each of the five field scenes, at 96 voxels a side. Times in ms.");
-  AddTable(page, WholeRunRows(study.whole_run));
+  page.Table(WholeRunRows(study.whole_run));
   return page.ToText();
 }
 

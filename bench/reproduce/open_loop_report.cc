@@ -18,8 +18,6 @@ std::string Words(sdf::Knowledge knowledge) {
   return words;
 }
 
-std::string Of(int part, int all) { return std::to_string(part) + " / " + std::to_string(all); }
-
 std::string Between(const char* format, const Interval& interval, double scale = 1) {
   return "[" + FiniteText(format, scale * interval.low) + ", " +
          FiniteText(format, scale * interval.high) + "]";
@@ -106,23 +104,15 @@ void AddPublished(HtmlPage& page, const TableComparison& comparison) {
                  std::to_string(comparison.rows_compared) +
                  " rows. Costs agree if they differ by "
                  "no more than a millionth.");
-  std::vector<std::vector<std::string>> rows;
-  for (const ColumnComparison& column : comparison.columns) {
-    rows.push_back({column.column, Of(column.agreeing, column.compared),
-                    FiniteText("{:.2g}", column.largest_relative_difference),
-                    FiniteText("{:.6g}", column.mean_ours),
-                    FiniteText("{:.6g}", column.mean_published)});
-  }
-  page.Table({"column", "agree", "largest relative difference", "our mean", "published mean"},
-             rows);
+  page.Table(MakeTextTable(comparison));
   if (comparison.differences.empty()) return;
   page.Paragraph("Entries that differ:");
-  rows.clear();
+  TextTable rows = {{"column", "pair", "m/s", "ours", "published"}};
   for (const EntryDifference& entry : comparison.differences) {
     rows.push_back({entry.column, std::to_string(entry.pair), FiniteText("{:g}", entry.speed_m_s),
                     FiniteText("{:.9g}", entry.ours), FiniteText("{:.9g}", entry.published)});
   }
-  page.Table({"column", "pair", "m/s", "ours", "published"}, rows);
+  page.Table(rows);
 }
 
 void AddVerdicts(HtmlPage& page, const OpenLoopStudy& study) {
@@ -132,30 +122,23 @@ void AddVerdicts(HtmlPage& page, const OpenLoopStudy& study) {
       "and takes everything outside the grid as free. Here the same motions are judged by the "
       "exact "
       "boxes where they were meant to stand, at the states and then every 5 ms between them.");
-  std::vector<std::vector<std::string>> rows;
-  for (const VerdictCounts& counts : CountVerdicts(study)) {
-    rows.push_back({Words(counts.knowledge), Of(counts.free, counts.num_rows),
-                    std::to_string(counts.truly_free_states), std::to_string(counts.truly_free),
-                    FiniteText("{:.0f} mm", 1e3 * counts.deepest_m)});
-  }
-  page.Table({"planner knows", "free, as published", "free of the true boxes at the states",
-              "and between them", "deepest hit of a row called free"},
-             rows);
+  page.Table(MakeVerdictTable(study));
 }
 
 void AddRates(HtmlPage& page, const OpenLoopStatistics& statistics) {
-  std::vector<std::vector<std::string>> rows;
+  TextTable rows = {{"planner knows", "free", "rate", "Wilson 95 %", "mean GP cost"}};
   for (const FreeRate& rate : statistics.pooled) {
     rows.push_back({Words(rate.knowledge), Of(rate.num_free, rate.num_rows),
                     FiniteText("{:.1f} %", kPercent * rate.num_free / rate.num_rows),
                     Between("{:.1f}", rate.wilson, kPercent),
                     FiniteText("{:.2f}", rate.mean_gp_cost)});
   }
-  page.Table({"planner knows", "free", "rate", "Wilson 95 %", "mean GP cost"}, rows);
+  page.Table(rows);
 }
 
 void AddComparisons(HtmlPage& page, const OpenLoopStatistics& statistics) {
-  std::vector<std::vector<std::string>> rows;
+  TextTable rows = {{"matched by start, goal and speed", "only one free", "points of free rate",
+                     "McNemar, speeds", "median GP cost", "Wilcoxon, speeds", "of both free"}};
   for (const KnowledgeComparison& c : statistics.comparisons) {
     const int num_speeds = static_cast<int>(c.levels.size());
     rows.push_back(
@@ -168,9 +151,7 @@ void AddComparisons(HtmlPage& page, const OpenLoopStatistics& statistics) {
          Of(c.CountSignificantCosts(&LevelComparison::all), num_speeds),
          Of(c.CountSignificantCosts(&LevelComparison::both_succeed), num_speeds)});
   }
-  page.Table({"matched by start, goal and speed", "only one free", "points of free rate",
-              "McNemar, speeds", "median GP cost", "Wilcoxon, speeds", "of both free"},
-             rows);
+  page.Table(rows);
 }
 
 void AddStatistics(HtmlPage& page, const std::vector<OpenLoopStatistics>& statistics) {
@@ -226,6 +207,18 @@ std::vector<VerdictCounts> CountVerdicts(const OpenLoopStudy& study) {
     list.push_back(sums);
   }
   return list;
+}
+
+TextTable MakeVerdictTable(const OpenLoopStudy& study) {
+  TextTable rows = {{"planner knows", "free as published", "truly free at the states",
+                     "and all along", "deepest hit", "mean GP cost"}};
+  for (const VerdictCounts& counts : CountVerdicts(study)) {
+    rows.push_back({Words(counts.knowledge), Of(counts.free, counts.num_rows),
+                    std::to_string(counts.truly_free_states), std::to_string(counts.truly_free),
+                    FiniteText("{:.0f} mm", 1e3 * counts.deepest_m),
+                    FiniteText("{:.4f}", counts.mean_gp_cost)});
+  }
+  return rows;
 }
 
 Figure MakeOpenLoopFigure(const std::vector<MatchedOutcomes>& ours,

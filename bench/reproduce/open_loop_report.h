@@ -23,6 +23,9 @@ struct VerdictCounts {
   double mean_gp_cost = 0;    ///< of all rows
 };
 std::vector<VerdictCounts> CountVerdicts(const OpenLoopStudy& study);
+/// The same for people. What is truly free is so of the rows that are free as published, and the
+/// deepest hit is in one of them.
+TextTable MakeVerdictTable(const OpenLoopStudy& study);
 
 /// The comparison with a published table, and its rows for the figure.
 struct PublishedComparison {

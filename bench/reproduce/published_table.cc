@@ -9,6 +9,7 @@
 
 #include "sidestep/bench/reproduce/published_columns.h"
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/number_text.h"
 
 namespace sidestep::bench {
 namespace {
@@ -175,6 +176,18 @@ TableComparison CompareTables(const CsvTable& ours, const CsvTable& published,
   return comparison;
 }
 
+TextTable MakeTextTable(const TableComparison& comparison) {
+  TextTable rows = {
+      {"column", "agree", "largest relative difference", "our mean", "published mean"}};
+  for (const ColumnComparison& column : comparison.columns) {
+    rows.push_back({column.column, Of(column.agreeing, column.compared),
+                    FiniteText("{:.2g}", column.largest_relative_difference),
+                    FiniteText("{:.6g}", column.mean_ours),
+                    FiniteText("{:.6g}", column.mean_published)});
+  }
+  return rows;
+}
+
 std::string Describe(const TableComparison& comparison) {
   std::string text = fmt::format("{} rows compared", comparison.rows_compared);
   if (comparison.rows_only_published > 0) {
@@ -185,13 +198,7 @@ std::string Describe(const TableComparison& comparison) {
   }
   text += fmt::format("\ncolliding-state counts: {} of {} agree\n", comparison.CountsAgreeing(),
                       comparison.CountsCompared());
-  text += fmt::format("{:<38} {:>8} {:>8} {:>12} {:>14} {:>14}\n", "column", "agree", "of",
-                      "largest rel.", "our mean", "published mean");
-  for (const ColumnComparison& column : comparison.columns) {
-    text += fmt::format("{:<38} {:8} {:8} {:12.2e} {:14.6f} {:14.6f}\n", column.column,
-                        column.agreeing, column.compared, column.largest_relative_difference,
-                        column.mean_ours, column.mean_published);
-  }
+  text += ToText(MakeTextTable(comparison));
   text += fmt::format("(costs agree within {:.0e})\n", kCostTolerance);
   for (const EntryDifference& entry : comparison.differences) {
     text += fmt::format("differs: pair {}, {:g} m/s, {}: {:.15g}, published {:.15g}\n", entry.pair,

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "sidestep/bench/report/table.h"
 #include "sidestep/bench/reproduce/csv_table.h"
 #include "sidestep/bench/reproduce/open_loop_study.h"
 
@@ -54,6 +55,9 @@ inline constexpr double kCostTolerance = 1e-6;
 /// or the same row twice.
 TableComparison CompareTables(const CsvTable& ours, const CsvTable& published,
                               const std::string& published_path);
+
+/// One row a column that was compared.
+TextTable MakeTextTable(const TableComparison& comparison);
 
 /// The comparison in words, for a person to read.
 std::string Describe(const TableComparison& comparison);

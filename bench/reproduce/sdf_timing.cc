@@ -217,19 +217,20 @@ std::string MakeSdfTimingPage(const SdfTimingOptions& options, const CsvTable& o
   if (!svg_path.empty()) {
     page.Picture(svg_path, "Medians with 10 % and 90 % quantiles as bands, over the grid's size.");
   }
-  std::vector<std::string> header = {"voxels a side"};
-  std::vector<std::vector<std::string>> rows, errors;
+  TextTable times = {{"voxels a side"}};
+  TextTable errors = {{"voxels a side", "fields compared", "largest difference in free cells [m]",
+                       "inside obstacles [m]"}};
   for (std::size_t row = 0; row < ours.num_rows(); ++row) {
-    rows.push_back({FiniteText("{:.0f}", Get(ours, row, kVoxelsColumn))});
-    errors.push_back({rows.back().front(), FiniteText("{:.0f}", Get(ours, row, "n_compared")),
+    times.push_back({FiniteText("{:.0f}", Get(ours, row, kVoxelsColumn))});
+    errors.push_back({times.back().front(), FiniteText("{:.0f}", Get(ours, row, "n_compared")),
                       FiniteText("{:g}", Get(ours, row, "largest_error_free_m")),
                       FiniteText("{:g}", Get(ours, row, "largest_error_inside_m"))});
     for (const Entry& entry : Entries(ours, row, published)) {
-      if (row == 0) header.push_back(entry.words);
-      rows.back().push_back(entry.text);
+      if (row == 0) times.front().push_back(entry.words);
+      times.back().push_back(entry.text);
     }
   }
-  page.Table(header, rows);
+  page.Table(times);
   page.Heading("Is the composite the same field?");
   page.Paragraph(
       "At cell centres, where objects are moved by whole cells, the composite equals the exact "
@@ -238,9 +239,7 @@ std::string MakeSdfTimingPage(const SdfTimingOptions& options, const CsvTable& o
       "underestimate the depth. Compared where every object lies wholly in the grid: beyond it, "
       "the "
       "composite knows more than the grid.");
-  page.Table({"voxels a side", "fields compared", "largest difference in free cells [m]",
-              "inside obstacles [m]"},
-             errors);
+  page.Table(errors);
   return page.ToText();
 }
 

@@ -76,7 +76,7 @@ TEST(HtmlPage, EscapesTextAndStandsAlone) {
   std::ofstream(svg) << "<svg id=\"a\">#</svg>\n";
   HtmlPage page("a < b");
   page.Heading("x & y");
-  page.Table({"name", "<1>"}, {{"\"q\"", "2"}});
+  page.Table({{"name", "<1>"}, {"\"q\"", "2"}});
   page.Paragraph("caf\xC3\xA9, caf\xE9");
   page.Picture(svg, "what it shows");
   EXPECT_THAT(page.ToText(),
