@@ -1,4 +1,5 @@
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "sidestep/cli/wiring.h"
 #include "sidestep/core/atomic_file.h"
 #include "sidestep/core/number_text.h"
+#include "sidestep/record/questions.h"
 #include "sidestep/record/recording_file.h"
 
 namespace sidestep::cli {
@@ -34,11 +36,17 @@ void PrintSummary(const bench::EpisodeResult& result, const std::string& out) {
   };
   Print("outcome          {}\n", ToString(result.outcome));
   if (!result.reason.empty()) Print("reason           {}\n", result.reason);
-  Print("first contact    {}\n", number("first_contact_s", 1, "{:.3f} s"));
+  const std::optional<record::Touch> touch = record::FirstTouch(result.recording);
+  Print("first contact    {}{}\n", number("first_contact_s", 1, "{:.3f} s"),
+        touch && !touch->object.empty() ? ", with " + touch->object : "");
   Print("least clearance  {}\n", number("min_clearance_m", 1e3, "{:.1f} mm"));
   Print("time to goal     {}\n", number("time_to_goal_s", 1, "{:.3f} s"));
   Print("GP cost          {}\n", number("gp_cost", 1, "{:.2f}"));
   Print("jerk RMS         {}\n", number("jerk_rms", 1, "{:.1f} rad/s^3"));
+  if (metrics.at("samples_outside_grid") > 0) {
+    Print("outside the map  {} places of planned motion: nothing is seen there\n",
+          metrics.at("samples_outside_grid"));
+  }
   const std::vector<double>& cycle_s = result.times.at("cycle");
   if (cycle_s.empty()) {
     Print("planning cycle   - (there was none)\n");

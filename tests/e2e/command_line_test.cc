@@ -321,11 +321,13 @@ TEST(Study, KeepsTracesAndSaysWhatRunsAnEpisodeAgainToTheBit) {
     const std::string trace = TextOf(folder.path() / "study" / line.substr(at, comma - at));
     const std::string command = line.substr(comma + 1);
     ASSERT_THAT(command, StartsWith("sidestep run walkway_behaviours "));
-    const fs::path again = folder.path() / ("again" + std::to_string(++num_rows));
-    const Finished run = RunProgram(
-        {"/bin/sh", "-c", SIDESTEP_PROGRAM + command.substr(8) + " --out " + again.string()});
+    // As it stands in the table: each row has a folder of its own to go into.
+    const Finished run = RunProgram({"/bin/sh", "-c", SIDESTEP_PROGRAM + command.substr(8)}, {},
+                                    folder.path().string());
     EXPECT_EQ(run.exit_code, 0) << run.err;
+    const fs::path again = folder.path() / command.substr(command.find("--out ") + 6);
     EXPECT_TRUE(TextOf(again / "trace.h5") == trace) << command;
+    ++num_rows;
     EXPECT_NE(trace, last_trace);
     last_trace = trace;
   }
