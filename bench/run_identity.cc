@@ -8,6 +8,7 @@
 
 #include "sidestep/core/fingerprint.h"
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/number_text.h"
 
 namespace sidestep::bench {
 namespace {
@@ -41,6 +42,15 @@ RunIdentity IdentifyRun(const scenarios::Scenario& scenario, const std::string& 
                         const std::string& build) {
   Fingerprint text, files;
   text.Add(scenarios::ToYaml(scenario));
+  // They stand in a trace too, even where they change nothing of the scenario.
+  for (const auto& [choice, chosen] : scenario.choices) {
+    text.Add(choice);
+    text.Add(chosen);
+  }
+  for (const auto& [key, value] : scenario.drawn) {
+    text.Add(key);
+    text.Add(ShortestText(value));
+  }
   std::set<std::string> names = {scenario.robot};
   for (const scenarios::MovingObstacle& obstacle : scenario.moving_obstacles) {
     names.insert(obstacle.appearance);

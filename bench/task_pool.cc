@@ -4,6 +4,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -25,7 +26,11 @@ void RunTasks(int count, int num_jobs, const std::function<void(int)>& task) {
     }
   };
   std::vector<std::thread> others;
-  for (int j = 1; j < std::min(num_jobs, count); ++j) others.emplace_back(work);
+  try {
+    for (int j = 1; j < std::min(num_jobs, count); ++j) others.emplace_back(work);
+  } catch (const std::system_error&) {
+    // The system has no more threads to give: those that there are do it all.
+  }
   work();
   for (std::thread& thread : others) thread.join();
   if (error) std::rethrow_exception(error);

@@ -3,9 +3,11 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "sidestep/cli/command.h"
@@ -60,6 +62,15 @@ void ParseSize(const std::string& text, render::PictureOptions* picture) {
 }
 
 // Before anything is drawn.
+void CheckIsNoTrace(const std::string& output, const RenderOptions& options) {
+  for (const std::string& trace : options.traces) {
+    std::error_code error;
+    if (std::filesystem::equivalent(output, trace, error)) {
+      throw InputError(output, "is a trace to draw, it must not be written over");
+    }
+  }
+}
+
 void CheckOutputs(const RenderOptions& options, const render::PictureOptions& picture) {
   if (!options.video.empty()) {
     render::CheckVideoName(options.video);
@@ -67,10 +78,12 @@ void CheckOutputs(const RenderOptions& options, const render::PictureOptions& pi
       throw InputError("--size",
                        "a video's width and height must be even, is '" + options.size + "'");
     }
+    CheckIsNoTrace(options.video, options);
     CheckCanWrite(options.video);
   }
   if (!options.still.empty()) {
     render::CheckPngName(options.still);
+    CheckIsNoTrace(options.still, options);
     CheckCanWrite(options.still);
   }
 }

@@ -13,6 +13,7 @@ namespace sidestep::scenarios {
 namespace {
 
 constexpr double kLongest_s = 86400, kShortestInterval_s = 1e-3;
+constexpr double kTimeRounding_s = 1e-9;  // a day in steps of 1 ms is off by less
 constexpr double kFarthest_m = 1e6, kFastest_m_s = 100;
 constexpr double kUnitLength = 1e-3;
 // Of the mean speed: below it, a direction is mostly the noise of where it was seen.
@@ -110,7 +111,7 @@ std::optional<TrackFault> AppendSample(const std::vector<double>& row,
       return TrackFault{"", "must have as many numbers as the samples before it"};
     }
     const double interval_s = sample.t_s - before.t_s;
-    if (!(interval_s >= kShortestInterval_s)) {
+    if (!(interval_s >= kShortestInterval_s - kTimeRounding_s)) {
       return TrackFault{"t", "must be at least 0.001 s after the sample before it, at " +
                                  Number(before.t_s) + ", is " + Number(sample.t_s)};
     }

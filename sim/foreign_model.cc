@@ -3,15 +3,12 @@
 #include <tinyxml2.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdlib>
-#include <cstring>
-#include <fstream>
 #include <set>
-#include <sstream>
 #include <string_view>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/text_file.h"
 
 namespace sidestep::sim {
 namespace {
@@ -119,14 +116,7 @@ class Walk {
 
 }  // namespace
 
-std::string ReadModelFile(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf())) {
-    throw InputError(path, std::string("cannot be read: ") + std::strerror(errno));
-  }
-  return text.str();
-}
+std::string ReadModelFile(const std::string& path) { return ReadTextFile(path, kMostBytes); }
 
 const XMLElement& ParseModel(const std::string& xml, const std::string& name,
                              tinyxml2::XMLDocument* document) {

@@ -400,7 +400,7 @@ INSTANTIATE_TEST_SUITE_P(
               "cycles/t",
               {3},
               {0, kNan, 1},
-              "cycles/t: holds a time that is not finite"},
+              "cycles/t: holds a time that is not from 0 to 3600 s"},
         Fault{"TimeDoesNotIncrease", "truth/t", {3}, {0, 1, 1}, "truth/t: does not increase"},
         Fault{"OffsetsOfAnotherType",
               "plans/offset",
