@@ -411,6 +411,11 @@ std::map<std::string, Choice> ReadChoices(const YamlReader& top) {
   if (!top.Has("choices")) return choices;
   const YamlReader map = top.GetMap("choices");
   for (const std::string& name : map.Keys()) {
+    // A study has factors of these names, and a setting of one would be taken for the other.
+    for (const char* const taken : {"seed", "speed_m_s", "knowledge", "predictor"}) {
+      if (name == taken)
+        map.Fail(name, "is the name of something else that varies; choose another");
+    }
     const YamlReader choice = map.GetMap(name);
     YamlReader options = choice.GetMap("options");
     const std::string chosen = choice.GetChoice("default", options.Keys());
@@ -456,7 +461,7 @@ Scenario Read(YamlReader top, const std::string& file, const std::optional<std::
   scenario.name = top.Has("name") ? top.GetString("name")
                                   : EscapeInvalidUtf8(std::filesystem::path(file).stem().string());
   scenario.description = top.GetString("description");
-  std::set<std::string> names = {"floor", "self"};  // words of verdicts
+  std::set<std::string> names = {"floor", "self", "world"};  // words of verdicts and of MJCF
   const bool has_robot = HasRobot(top);
   if (has_robot) {
     ReadRobot(top, scenario);

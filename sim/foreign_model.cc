@@ -3,8 +3,10 @@
 #include <tinyxml2.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <set>
+#include <sstream>
 #include <string_view>
 
 #include "sidestep/core/input_error.h"
@@ -69,6 +71,7 @@ class Walk {
       // file, and fileright, fileup, ... of a sky
       if (StartsWith(attribute->Name(), "file")) Fail(element, attribute->Name(), kNoFiles);
       CheckBound(element, *attribute);
+      CheckFinite(element, *attribute);
     }
     if (kRefused.count(tag) > 0) Fail(element, tag, "is no part of a robot of primitives");
     if (tag == "texture") CountTexture(element);
@@ -96,6 +99,21 @@ class Walk {
       Fail(element, attribute.Name(),
            "must be at most " + std::to_string(static_cast<int>(bound.most)) + ", is " +
                attribute.Value());
+    }
+  }
+
+  // MuJoCo takes numbers that are none, and computes with them.
+  void CheckFinite(const XMLElement& element, const tinyxml2::XMLAttribute& attribute) const {
+    std::istringstream words(attribute.Value());
+    bool is_numeric = true, is_finite = true;
+    for (std::string word; words >> word;) {
+      char* end = nullptr;
+      is_finite = std::isfinite(std::strtod(word.c_str(), &end)) && is_finite;
+      is_numeric = *end == '\0' && is_numeric;
+    }
+    const std::string_view key = attribute.Name();
+    if (is_numeric && !is_finite && key != "name" && key != "class") {
+      Fail(element, key, std::string("must be finite, is ") + attribute.Value());
     }
   }
 
