@@ -176,6 +176,10 @@ class Comparison {
                "joint", "range");
     CheckLimit(i, "q_max_rad", limits.q_max, limited ? model_.jnt_range[2 * joint + 1] : kInfinity,
                "joint", "range");
+    if (!std::isfinite(limits.v_max)) {
+      FailInYaml(KeyOf(i) + ".limits.v_max_rad_s",
+                 "is not given: nothing can be moved without a greatest speed");
+    }
   }
 
   void CheckMotorOf(int i) const {
