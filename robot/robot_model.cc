@@ -179,7 +179,7 @@ RobotModel RobotModel::FromFile(const std::string& path, const Pose& X_WB) {
     model.limits_.push_back(ReadLimits(joint.GetMap("limits")));
     const std::string key = "joints[" + std::to_string(model.joint_names_.size() - 1) + "]";
     for (const char* const part : {"name", "dh"}) model.lines_[key + "." + part] = joint.Line(part);
-    for (const char* const limit : {"q_min_rad", "q_max_rad", "torque_max_n_m"}) {
+    for (const char* const limit : {"q_min_rad", "q_max_rad", "v_max_rad_s", "torque_max_n_m"}) {
       model.lines_[key + ".limits." + limit] = joint.GetMap("limits").Line(limit);
     }
     joint.CheckNoUnknownKeys();
