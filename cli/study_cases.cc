@@ -57,15 +57,13 @@ std::vector<bench::Factors> StudyCases(const StudySpace& space, const DataPaths&
   for (const double speed : space.speeds) speeds.push_back(scenarios::Number(speed));
   for (int seed = 1; seed <= space.episodes; ++seed) seeds.push_back(std::to_string(seed));
   const auto& asked = space.knowledge;
-  if (std::find(asked.begin(), asked.end(), kSearch) == asked.end()) {
-    CheckWords("--knowledge", asked, KnowledgeWords());
-  }
-  CheckWords("--predictor", space.predictors, sdf::PredictorNames());
   std::vector<std::string> knowledge = ValuesOf("knowledge", "--knowledge", asked, settings);
   if (std::find(knowledge.begin(), knowledge.end(), kSearch) != knowledge.end()) {
     throw InputError(asked.empty() ? "--set knowledge" : "--knowledge",
                      "'search' is asked for by --search");
   }
+  CheckWords("--knowledge", asked, KnowledgeWords());
+  CheckWords("--predictor", space.predictors, sdf::PredictorNames());
   if (space.search > 0) knowledge.push_back(kSearch);
   const std::vector<std::string> predictors =
       ValuesOf("predictor", "--predictor", space.predictors, settings);

@@ -132,13 +132,13 @@ class Study {
       const bench::StudyRow* const known = log.Find(cases_[i]);
       rows[i] = known != nullptr && !LacksTrace(*known) ? *known : RunCase(cases_[i]);
       rows[i].command = RunCommandOf(options_.space.scenario, cases_[i]);
+      const bool was_refused = rows[i].identity.build.empty();
       // Each to a folder of its own, so that none takes the place of another.
-      if (!rows[i].command.empty() && !rows[i].identity.build.empty()) {
+      if (!rows[i].command.empty() && !was_refused) {
         rows[i].command += " --out out/again/" + RunId(rows[i].identity);
       }
       if (std::filesystem::exists(out_ + "/" + TraceOf(rows[i]))) rows[i].trace = TraceOf(rows[i]);
       const std::lock_guard lock(finishing);
-      const bool was_refused = rows[i].identity.build.empty();
       if (known == nullptr && !was_refused) log.Append(rows[i]);
       if (++num_done % 50 == 0) PrintError("{} of {}\n", num_done, cases_.size());
     });

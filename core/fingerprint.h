@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "sidestep/core/fnv1a.h"
+
 namespace sidestep {
 
 /// A short name for a content: 64 bits of FNV-1a over its parts. It tells a changed file from the
@@ -16,9 +18,9 @@ class Fingerprint {
   std::string Text() const;
 
  private:
-  void AddByte(unsigned char byte) { hash_ = (hash_ ^ byte) * 0x100000001b3u; }
+  void AddByte(unsigned char byte) { hash_ = Fnv1a(hash_, byte); }
 
-  std::uint64_t hash_ = 0xcbf29ce484222325u;
+  std::uint64_t hash_ = kFnv1aBasis;
 };
 
 }  // namespace sidestep

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "sidestep/core/fnv1a.h"
+
 namespace sidestep {
 
 /// A stream of random numbers that belongs to one purpose of one episode: the seed and the
@@ -15,8 +17,8 @@ namespace sidestep {
 class RandomStream {
  public:
   RandomStream(std::uint64_t seed, std::string_view purpose) {
-    std::uint64_t hash = 0xcbf29ce484222325u;
-    for (const char c : purpose) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+    std::uint64_t hash = kFnv1aBasis;
+    for (const char c : purpose) hash = Fnv1a(hash, static_cast<unsigned char>(c));
     state_ = seed;
     state_ = Bits() ^ hash;
   }

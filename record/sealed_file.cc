@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "sidestep/core/atomic_file.h"
+#include "sidestep/core/fnv1a.h"
 #include "sidestep/core/input_error.h"
 
 namespace sidestep::record {
@@ -20,11 +21,9 @@ constexpr std::size_t kHeadBytes = 512;  // the smallest user block of HDF5
 constexpr std::string_view kLengthKey = "payload_bytes ";
 constexpr std::string_view kChecksumKey = "payload_fnv1a64 ";
 
-// FNV-1a, 64 bits: every change of a single byte changes it, and almost every other change does.
-// Source: G. Fowler, L. C. Noll, K.-P. Vo, D. Eastlake, "The FNV Non-Cryptographic Hash Algorithm".
 std::uint64_t Checksum(std::span<const unsigned char> bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const unsigned char byte : bytes) hash = (hash ^ byte) * 0x100000001b3u;
+  std::uint64_t hash = kFnv1aBasis;
+  for (const unsigned char byte : bytes) hash = Fnv1a(hash, byte);
   return hash;
 }
 
