@@ -11,7 +11,7 @@ class MjcfLines {
   explicit MjcfLines(std::string path) : path_(std::move(path)) {}
 
   /// The line, from 1, of the first element in which `attribute` has this value, among those of one
-  /// tag (any if it is empty), outside of <default>; 1 if there is none.
+  /// tag (any if it is empty), outside of `default`; 1 if there is none.
   int Find(const std::string& tag, const std::string& attribute, const std::string& value) const;
 
   const std::string& path() const { return path_; }
