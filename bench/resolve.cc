@@ -63,9 +63,9 @@ class TaskChecker {
     }
   }
 
-  // Against one thing, as it stands at the beginning.
+  // Against one thing, as it stands at the beginning. @param path of it in the file.
   void CheckClear(const std::string& key, const Eigen::VectorXd& q, const std::string& object,
-                  const sdf::ShapeField& solid) const {
+                  const std::string& path, const sdf::ShapeField& solid) const {
     const robot::SphereCenters spheres = robot_.ComputeSphereCenters(q, false);
     const std::string& stands_on = scenario_.mount.empty() ? kFloor : scenario_.mount;
     const std::vector<int>& mount_spheres = robot_.mount_spheres();
@@ -81,13 +81,17 @@ class TaskChecker {
       deepest = s;
     }
     if (deepest < 0) return;
-    Fail(key, fmt::format("the robot's sphere {} is {:.1f} mm inside '{}'", deepest, -1e3 * least_m,
-                          object));
+    Fail(key,
+         fmt::format("the robot's sphere {} is {:.1f} mm inside '{}'", deepest, -1e3 * least_m,
+                     object),
+         {path, "robot"});
   }
 
  private:
-  [[noreturn]] void Fail(const std::string& key, const std::string& why) const {
-    throw scenarios::WrongValue(scenario_, key, why);
+  // @param against what else may be wrong instead.
+  [[noreturn]] void Fail(const std::string& key, const std::string& why,
+                         const std::vector<std::string>& against = {"robot.model"}) const {
+    throw scenarios::WrongValue(scenario_, key, why, against);
   }
 
   const scenarios::Scenario& scenario_;
@@ -104,17 +108,21 @@ void ResolveTask(scenarios::Scenario& scenario, const robot::RobotModel& robot) 
   check.CheckLimits("task.goal", scenario.q_goal);
   check.CheckSelf("task.start", scenario.q_start);
   check.CheckSelf("task.goal", scenario.q_goal);
-  const auto check_both = [&](const std::string& object, const sdf::ShapeField& solid) {
-    check.CheckClear("task.start", scenario.q_start, object, solid);
-    check.CheckClear("task.goal", scenario.q_goal, object, solid);
+  const auto check_both = [&](const std::string& object, const std::string& path,
+                              const sdf::ShapeField& solid) {
+    check.CheckClear("task.start", scenario.q_start, object, path, solid);
+    check.CheckClear("task.goal", scenario.q_goal, object, path, solid);
   };
-  check_both(kFloor, sdf::ShapeField(StaticSolids{{}, {FloorOf(scenario)}}));
-  for (const scenarios::StaticBox& box : scenario.static_boxes) {
-    check_both(box.name, sdf::ShapeField(StaticSolids{{{Box{box.size_m}, box.X_WO}}, {}}));
+  check_both(kFloor, "floor_m", sdf::ShapeField(StaticSolids{{}, {FloorOf(scenario)}}));
+  for (std::size_t n = 0; n < scenario.static_boxes.size(); ++n) {
+    const scenarios::StaticBox& box = scenario.static_boxes[n];
+    check_both(box.name, "static_boxes[" + std::to_string(n) + "]",
+               sdf::ShapeField(StaticSolids{{{Box{box.size_m}, box.X_WO}}, {}}));
   }
   const std::vector<sdf::MovingShape> motions = TrueMotions(scenario);
   for (std::size_t n = 0; n < motions.size(); ++n) {
     check.CheckClear("task.start", scenario.q_start, scenario.moving_obstacles[n].name,
+                     "moving_obstacles[" + std::to_string(n) + "]",
                      sdf::ShapeField({}, {motions[n]}));
   }
 }

@@ -37,6 +37,33 @@ void Override(scenarios::Scenario& scenario, const Overrides& overrides) {
   }
 }
 
+bool IsWithin(const std::string& path, const std::string& whole) {
+  return path == whole || path.starts_with(whole + ".") || path.starts_with(whole + "[");
+}
+
+// What a flag and a setting both give would depend on which of them comes last.
+void CheckGivenOnce(const Overrides& overrides) {
+  const struct {
+    const char* flag;
+    const char* key;
+    bool is_given;
+  } flags[] = {{"--knowledge", "knowledge", overrides.knowledge.has_value()},
+               {"--predictor", "predictor", overrides.predictor.has_value()},
+               {"--seed", "seed", overrides.seed.has_value()},
+               {"--latency-ms", "replanning.latency_s", overrides.latency_ms.has_value()},
+               {"--epsilon", "planner.epsilon_m", overrides.epsilon_m.has_value()}};
+  const auto fail = [](const std::string& path, const std::string& flag) {
+    throw InputError("--set " + path, "is given by " + flag + " as well");
+  };
+  for (const auto& [path, value] : overrides.settings) {
+    for (const auto& [flag, key, is_given] : flags) {
+      if (is_given && (IsWithin(path, key) || IsWithin(key, path))) fail(path, flag);
+    }
+    const bool is_speed = IsWithin(path, "moving_obstacles") && path.ends_with(".speed_m_s");
+    if (is_speed && overrides.speed_m_s) fail(path, "--speed");
+  }
+}
+
 // Complains about `word` where it was written: the flag if there was one, else the file's line.
 void CheckWord(const scenarios::Scenario& scenario, const std::string& key, const std::string& word,
                const std::vector<std::string>& known, const char* flag = nullptr) {
@@ -61,6 +88,7 @@ std::vector<std::string> ModelNames(const std::string& models, const std::string
 // The file, overridden, with the words judged that have nothing to do with a robot.
 scenarios::Scenario LoadOverridden(const std::string& name, const Overrides& overrides,
                                    const DataPaths& paths) {
+  CheckGivenOnce(overrides);
   scenarios::Settings settings = overrides.settings;
   if (overrides.seed) settings["seed"] = std::to_string(*overrides.seed);  // motions follow from it
   scenarios::Scenario scenario = scenarios::LoadScenario(FindScenario(name, paths), settings);
@@ -107,6 +135,12 @@ scenarios::Settings ParseSettings(const std::vector<std::string>& texts) {
     const std::string key = text.substr(0, equals);
     if (!settings.emplace(key, text.substr(equals + 1)).second) {
       throw InputError("--set " + key, "is given twice");
+    }
+  }
+  for (const auto& [path, value] : settings) {
+    for (const auto& [whole, other_value] : settings) {
+      if (path == whole || !IsWithin(path, whole)) continue;
+      throw InputError("--set " + path, "is given by --set " + whole + " as well");
     }
   }
   return settings;

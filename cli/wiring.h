@@ -11,7 +11,7 @@
 
 namespace sidestep::cli {
 
-/// What the command line may change of a scenario.
+/// What the command line may change of a scenario; each thing once, by a flag or by a setting.
 struct Overrides {
   scenarios::Settings settings;  ///< put in place first
   std::optional<std::string> knowledge, predictor;
@@ -20,7 +20,8 @@ struct Overrides {
   std::optional<double> latency_ms, epsilon_m;
 };
 
-/// KEY=VALUE each. @throws InputError for one without a key or a =, or a key given twice.
+/// KEY=VALUE each. @throws InputError for one without a key or a =, or a key given twice, be it as
+/// a part of another.
 scenarios::Settings ParseSettings(const std::vector<std::string>& texts);
 
 /// The kinds of knowledge there are.

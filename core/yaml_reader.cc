@@ -1,6 +1,5 @@
 #include "sidestep/core/yaml_reader.h"
 
-#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -8,80 +7,22 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <map>
+#include <optional>
 #include <set>
-#include <sstream>
 
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
 #include "sidestep/core/text_file.h"
 #include "sidestep/core/utf8.h"
+#include "sidestep/core/yaml_tree.h"
 
 namespace sidestep {
 namespace {
 
+using Kind = YamlValue::Kind;
+
 // Far above any file a person writes, far below what would make the parser slow.
 constexpr std::uintmax_t kMaxFileBytes = 1 << 20;
-// yaml-cpp recurses once for each level; a hostile file must not exhaust the stack.
-constexpr int kMaxDepth = 64;
-
-// Refuses what yaml-cpp would recurse into too deeply. Only flow brackets and indentation nest.
-void CheckText(const std::string& text, const std::string& name) {
-  int line = 1, depth = 0;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte == 0 || (byte < 32 && c != '\n' && c != '\t' && c != '\r')) {
-      throw InputError(name, line, "", "is not a text file (byte " + std::to_string(byte) + ")");
-    }
-    if (c == '\n') ++line;
-    if (c == '[' || c == '{') ++depth;
-    if (c == ']' || c == '}') --depth;
-    if (depth > kMaxDepth) throw InputError(name, line, "", "is nested too deeply");
-  }
-  std::istringstream lines(text);
-  std::string row;
-  for (line = 1; std::getline(lines, row); ++line) {
-    int markers = 0;
-    for (std::size_t i = 0; i + 1 < row.size(); ++i) {
-      markers += (row[i] == '-' || row[i] == '?') && row[i + 1] == ' ';
-    }
-    const std::size_t indent = std::min(row.find_first_not_of(' '), row.size());
-    if (markers > kMaxDepth || indent > 4 * kMaxDepth) {
-      throw InputError(name, line, "", "is nested too deeply");
-    }
-  }
-}
-
-// Hears what yaml-cpp reads and keeps only where documents begin.
-class DocumentStarts : public YAML::EventHandler {
- public:
-  void OnDocumentStart(const YAML::Mark& mark) override { lines.push_back(mark.line + 1); }
-  void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                const std::string&) override {}
-  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                       YAML::EmitterStyle::value) override {}
-  void OnSequenceEnd() override {}
-  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                  YAML::EmitterStyle::value) override {}
-  void OnMapEnd() override {}
-
-  std::vector<int> lines;
-};
-
-// Asks for two documents and no more: yaml-cpp 0.7 takes a stray comma for an endless row of empty
-// ones (its issue 1040), so YAML::LoadAll may never return.
-void CheckOneDocument(const std::string& text, const std::string& name) {
-  std::istringstream stream(text);
-  YAML::Parser parser(stream);
-  DocumentStarts starts;
-  parser.HandleNextDocument(starts);
-  if (parser.HandleNextDocument(starts)) {
-    throw InputError(name, starts.lines.back(), "", "must hold one document; something follows it");
-  }
-}
 
 // `text` in quotes, cut where it would make a message unreadable.
 std::string Quote(const std::string& text) {
@@ -89,165 +30,131 @@ std::string Quote(const std::string& text) {
   return "'" + (text.size() <= kLongest ? text : Utf8Prefix(text, kLongest) + "...") + "'";
 }
 
-std::string Describe(const YAML::Node& node) {
-  switch (node.Type()) {
-    case YAML::NodeType::Null:
+std::string Describe(const YamlValue& value) {
+  switch (value.kind) {
+    case Kind::kNull:
       return "empty";
-    case YAML::NodeType::Scalar:
-      return Quote(node.Scalar());
-    case YAML::NodeType::Sequence:
+    case Kind::kScalar:
+      return Quote(value.text);
+    case Kind::kList:
       return "a list";
-    case YAML::NodeType::Map:
+    case Kind::kMap:
       return "a map";
-    default:
-      return "missing";
   }
+  return "";
 }
 
-// The keys and list places of a path: `a[0].b` leads over a and 0 to b.
-std::vector<std::string> KeysOf(const std::string& path) {
-  std::vector<std::string> keys = {""};
-  for (const char c : path) {
-    if (c == '.' || c == '[' || c == ']') {
-      keys.emplace_back();
-    } else {
-      keys.back() += c;
-    }
-  }
-  std::erase(keys, "");
-  return keys;
+std::string PathOfChild(const YamlValue& parent, const std::string& path, std::size_t n) {
+  if (parent.kind == Kind::kList) return path + "[" + std::to_string(n) + "]";
+  return (path.empty() ? "" : path + ".") + parent.children[n].key;
 }
 
-// What a map holds under a key or a list at a place; undefined if there is nothing.
-YAML::Node ChildOf(const YAML::Node& node, const std::string& key) {
-  if (node.IsMap()) {
-    for (const auto& entry : node) {
-      if (entry.first.IsScalar() && entry.first.Scalar() == key) return entry.second;
-    }
+struct SetPlace {
+  std::string by, path;
+};
+
+// The first value that was set, of those within `value`, which is at `path`.
+std::optional<SetPlace> FindSet(const YamlValue& value, const std::string& path) {
+  if (!value.setting.empty()) return SetPlace{value.setting, path};
+  for (std::size_t n = 0; n < value.children.size(); ++n) {
+    const auto found = FindSet(value.children[n], PathOfChild(value, path, n));
+    if (found) return found;
   }
-  if (node.IsSequence()) {
-    std::size_t index = 0;
-    const auto parsed = std::from_chars(key.data(), key.data() + key.size(), index);
-    const bool is_number = parsed.ec == std::errc() && parsed.ptr == key.data() + key.size();
-    if (is_number && index < node.size()) return node[index];
+  return std::nullopt;
+}
+
+void MarkAsSet(YamlValue& value, const std::string& by) {
+  value.setting = by;
+  for (YamlValue& child : value.children) MarkAsSet(child, by);
+}
+
+void AddLines(const YamlValue& value, const std::string& path, std::map<std::string, int>& lines) {
+  const bool is_set = !value.setting.empty();
+  if (!path.empty()) lines[path] = is_set ? 0 : value.line;
+  for (std::size_t n = 0; n < value.children.size(); ++n) {
+    const YamlValue& child = value.children[n];
+    // Who complains of a number in a list complains of the list.
+    if (value.kind == Kind::kList && child.kind != Kind::kMap && child.setting.empty()) continue;
+    AddLines(child, PathOfChild(value, path, n), lines);
   }
-  return YAML::Node(YAML::NodeType::Undefined);
 }
 
 }  // namespace
 
 struct YamlReader::Node {
-  YAML::Node yaml;
+  std::shared_ptr<const YamlValue> value;  // a map; keeps the whole tree
   std::string file;
   std::string path;  // of this map, empty at the top
-  int line = 1;
   mutable std::set<std::string> known;
-  // Paths that were set from elsewhere, and from where. Shared by all views of one file.
-  std::shared_ptr<std::map<std::string, std::string>> set =
-      std::make_shared<std::map<std::string, std::string>>();
 
   std::string PathOf(const std::string& key) const {
     if (path.empty()) return key;
     return key.empty() ? path : path + "." + key;
   }
-  static int LineOf(const YAML::Node& node, int otherwise) {
-    return node.Mark().line >= 0 ? node.Mark().line + 1 : otherwise;  // marks count from 0
-  }
-  YAML::Node Find(const std::string& key) const {
+  const YamlValue* Find(const std::string& key) const {
     known.insert(key);
-    return ChildOf(yaml, key);
+    return value->Find(key);
   }
   // What `key` leads to, or "key[3]" to an item of its list.
-  YAML::Node FindItem(const std::string& key) const {
-    const YAML::Node found = Find(key);
-    const std::size_t bracket = key.find('[');
-    if (found.IsDefined() || bracket == std::string::npos) return found;
-    const std::size_t length = key.find(']') - bracket - 1;
-    return ChildOf(ChildOf(yaml, key.substr(0, bracket)), key.substr(bracket + 1, length));
-  }
-  // The line of `key`, or of the list in which `key`, "list[3]", is an item; else of this map.
-  int LineOfKey(const std::string& key) const {
-    const std::string name = key.substr(0, key.find('['));
-    for (const auto& entry : yaml) {
-      if (entry.first.Scalar() == name) return LineOf(entry.first, line);
+  const YamlValue* FindItem(const std::string& key) const {
+    const YamlValue* found = Find(key);
+    if (found != nullptr || key.find('[') == std::string::npos) return found;
+    found = value.get();
+    for (const YamlStep& step : ParseYamlPath(key)) {
+      if (found == nullptr) return nullptr;
+      found = step.key.empty() ? found->FindItem(step.index) : found->Find(step.key);
     }
-    return line;
+    return found;
   }
-  // Throws if what is wrong at `full_path` was set from elsewhere: there or in what holds it.
-  void BlameSetting(const std::string& full_path, const std::string& why) const {
-    for (const auto& [set_path, origin] : *set) {
-      const bool is_inside =
-          full_path.rfind(set_path, 0) == 0 &&
-          (full_path.size() == set_path.size() || full_path[set_path.size()] == '.' ||
-           full_path[set_path.size()] == '[');
-      if (is_inside) throw InputError(origin + " " + full_path, why);
-    }
-  }
-  [[noreturn]] void FailAt(const YAML::Node& at, const std::string& key,
+  // Throws for `key` at what it leads to or, if it is not there, at this map. Who set a value, or
+  // some of it, is told so.
+  [[noreturn]] void FailAt(const YamlValue* at, const std::string& key,
                            const std::string& why) const {
-    BlameSetting(PathOf(key), why);
-    // The mark of an empty value is where the next thing begins: often a line too far down.
-    const bool marked = at.IsDefined() && !at.IsNull();
-    throw InputError(file, marked ? LineOf(at, line) : LineOfKey(key), PathOf(key), why);
+    const YamlValue& place = at == nullptr ? *value : *at;
+    if (!place.setting.empty()) throw InputError(place.setting + " " + PathOf(key), why);
+    const auto set = at == nullptr ? std::nullopt : FindSet(*at, PathOf(key));
+    if (set) throw InputError(set->by + " " + set->path, why);
+    throw InputError(file, place.line, PathOf(key), why);
   }
-  YAML::Node Require(const std::string& key) const {
-    const YAML::Node node = Find(key);
-    if (!node.IsDefined()) throw InputError(file, line, PathOf(key), "is missing");
-    return node;
+  const YamlValue& Require(const std::string& key) const {
+    const YamlValue* const found = Find(key);
+    if (found == nullptr) FailAt(nullptr, key, "is missing");
+    return *found;
   }
-  YAML::Node RequireSequence(const std::string& key) const {
-    const YAML::Node node = Require(key);
-    if (!node.IsSequence()) FailAt(node, key, "must be a list, is " + Describe(node));
-    return node;
+  const YamlValue& RequireList(const std::string& key) const {
+    const YamlValue& found = Require(key);
+    if (found.kind != Kind::kList) FailAt(&found, key, "must be a list, is " + Describe(found));
+    return found;
   }
-  double Number(const YAML::Node& node, const std::string& key) const {
-    if (!node.IsScalar()) FailAt(node, key, "must be a number, is " + Describe(node));
-    double value = 0;
-    const std::string& text = node.Scalar();
-    if (!YAML::convert<double>::decode(node, value)) {
+  double Number(const YamlValue& at, const std::string& key) const {
+    if (at.kind != Kind::kScalar) FailAt(&at, key, "must be a number, is " + Describe(at));
+    double number = 0;
+    if (!YAML::convert<double>::decode(YAML::Node(at.text), number)) {
       double ignored = 0;
-      const char* const end = text.data() + text.size();
-      const auto parsed = std::from_chars(text.data(), end, ignored);
+      const char* const end = at.text.data() + at.text.size();
+      const auto parsed = std::from_chars(at.text.data(), end, ignored);
       if (parsed.ec == std::errc::result_out_of_range && parsed.ptr == end) {
-        FailAt(node, key, "is out of range: " + text);
+        FailAt(&at, key, "is out of range: " + at.text);
       }
-      FailAt(node, key, "must be a number, is " + Quote(text));
+      FailAt(&at, key, "must be a number, is " + Quote(at.text));
     }
-    if (!std::isfinite(value)) FailAt(node, key, "must be finite, is " + text);
-    if (std::abs(value) > kLargestNumber) {
-      FailAt(node, key, "must be from -1e12 to 1e12, is " + text);
+    if (!std::isfinite(number)) FailAt(&at, key, "must be finite, is " + at.text);
+    if (std::abs(number) > kLargestNumber) {
+      FailAt(&at, key, "must be from -1e12 to 1e12, is " + at.text);
     }
-    return value;
+    return number;
   }
-  void CheckPositive(double value, const YAML::Node& node, const std::string& key) const {
-    if (!(value > 0)) FailAt(node, key, "must be > 0, is " + node.Scalar());
-    if (value < 1 / kLargestNumber) {
-      FailAt(node, key, "must be at least 1e-12, is " + node.Scalar());
-    }
+  void CheckPositive(double number, const YamlValue& at, const std::string& key) const {
+    if (!(number > 0)) FailAt(&at, key, "must be > 0, is " + at.text);
+    if (number < 1 / kLargestNumber) FailAt(&at, key, "must be at least 1e-12, is " + at.text);
   }
-  std::unique_ptr<Node> Child(const YAML::Node& node, const std::string& key) const {
-    if (!node.IsMap()) FailAt(node, key, "must be a map, is " + Describe(node));
+  std::unique_ptr<Node> Child(const YamlValue& at, const std::string& key) const {
+    if (at.kind != Kind::kMap) FailAt(&at, key, "must be a map, is " + Describe(at));
     auto child = std::make_unique<Node>();
-    child->yaml = node;
+    child->value = std::shared_ptr<const YamlValue>(value, &at);
     child->file = file;
     child->path = PathOf(key);
-    child->set = set;
-    child->line = LineOf(node, line);  // of its first key
-    child->CheckKeys();
     return child;
-  }
-  // yaml-cpp keeps both of two equal keys and answers with the first.
-  void CheckKeys() const {
-    std::set<std::string> seen;
-    for (const auto& entry : yaml) {
-      if (!entry.first.IsScalar()) {
-        throw InputError(file, LineOf(entry.first, line), path, "keys must be plain words");
-      }
-      if (!seen.insert(entry.first.Scalar()).second) {
-        throw InputError(file, LineOf(entry.first, line), PathOf(entry.first.Scalar()),
-                         "is given twice");
-      }
-    }
   }
 };
 
@@ -261,54 +168,47 @@ YamlReader YamlReader::FromFile(const std::string& path) {
 }
 
 YamlReader YamlReader::FromText(const std::string& bytes, const std::string& name) {
-  const std::string text = DecodeText(bytes, name);
-  CheckText(text, name);
+  YamlValue top = ParseYaml(DecodeText(bytes, name),
+                            [&](int line, const std::string& key, const std::string& why) {
+                              return InputError(name, line, key, why);
+                            });
+  if (top.kind == Kind::kNull) throw InputError(name, 1, "", "is empty");
+  if (top.kind != Kind::kMap) {
+    throw InputError(name, 1, "", "must be a map of keys, is " + Describe(top));
+  }
+  top.line = 1;
   auto node = std::make_unique<Node>();
   node->file = name;
-  try {
-    // The mark that ends a document turns a quote that nobody closed into an error. Without it
-    // yaml-cpp takes the rest of the file for the quoted word.
-    const std::string closed_text = text + "\n...\n";
-    CheckOneDocument(closed_text, name);
-    node->yaml = YAML::Load(closed_text);
-    if (node->yaml.IsNull()) throw InputError(name, 1, "", "is empty");
-  } catch (const YAML::Exception& error) {
-    const bool open_quote = error.msg == YAML::ErrorMsg::DOC_IN_SCALAR;
-    throw InputError(name, error.mark.line + 1, "",
-                     open_quote ? "a quote is not closed" : "is not valid YAML: " + error.msg);
-  }
-  if (!node->yaml.IsMap()) {
-    throw InputError(name, 1, "", "must be a map of keys, is " + Describe(node->yaml));
-  }
-  node->CheckKeys();
+  node->value = std::make_shared<const YamlValue>(std::move(top));
   return YamlReader(std::move(node));
 }
 
-bool YamlReader::Has(const std::string& key) const { return node_->Find(key).IsDefined(); }
+bool YamlReader::Has(const std::string& key) const { return node_->Find(key) != nullptr; }
 
 std::string YamlReader::GetString(const std::string& key) const {
-  const YAML::Node node = node_->Require(key);
-  if (!node.IsScalar()) node_->FailAt(node, key, "must be a word, is " + Describe(node));
-  if (node.Scalar().empty()) node_->FailAt(node, key, "must not be empty");
-  return node.Scalar();
+  const YamlValue& at = node_->Require(key);
+  if (at.kind != Kind::kScalar) node_->FailAt(&at, key, "must be a word, is " + Describe(at));
+  if (at.text.empty()) node_->FailAt(&at, key, "must not be empty");
+  return at.text;
 }
 
 bool YamlReader::GetBool(const std::string& key) const {
-  const YAML::Node node = node_->Require(key);
-  if (node.IsScalar() && node.Scalar() == "true") return true;
-  if (node.IsScalar() && node.Scalar() == "false") return false;
-  node_->FailAt(node, key, "must be true or false, is " + Describe(node));
+  const YamlValue& at = node_->Require(key);
+  if (at.kind == Kind::kScalar && at.text == "true") return true;
+  if (at.kind == Kind::kScalar && at.text == "false") return false;
+  node_->FailAt(&at, key, "must be true or false, is " + Describe(at));
 }
 
 int YamlReader::GetInt(const std::string& key) const {
-  const YAML::Node node = node_->Require(key);
-  const std::string text = node.IsScalar() ? node.Scalar() : "";
+  const YamlValue& at = node_->Require(key);
   char* end = nullptr;
-  const long long value = std::strtoll(text.c_str(), &end, 10);
-  if (text.empty() || *end != '\0') {
-    node_->FailAt(node, key, "must be a whole number, is " + Describe(node));
+  const long long value = std::strtoll(at.text.c_str(), &end, 10);
+  if (at.text.empty() || *end != '\0') {
+    node_->FailAt(&at, key, "must be a whole number, is " + Describe(at));
   }
-  if (value > INT32_MAX || value < INT32_MIN) node_->FailAt(node, key, "is out of range: " + text);
+  if (value > INT32_MAX || value < INT32_MIN) {
+    node_->FailAt(&at, key, "is out of range: " + at.text);
+  }
   return static_cast<int>(value);
 }
 
@@ -318,19 +218,19 @@ double YamlReader::GetDouble(const std::string& key) const {
 
 double YamlReader::GetPositive(const std::string& key) const {
   const double value = GetDouble(key);
-  node_->CheckPositive(value, node_->Find(key), key);
+  node_->CheckPositive(value, node_->Require(key), key);
   return value;
 }
 
 double YamlReader::GetNonNegative(const std::string& key) const {
   const double value = GetDouble(key);
-  if (!(value >= 0)) Fail(key, "must be >= 0, is " + node_->Find(key).Scalar());
+  if (!(value >= 0)) Fail(key, "must be >= 0, is " + node_->Require(key).text);
   return value;
 }
 
 std::vector<double> YamlReader::GetDoubles(const std::string& key) const {
   std::vector<double> values;
-  for (const YAML::Node& item : node_->RequireSequence(key)) {
+  for (const YamlValue& item : node_->RequireList(key).children) {
     values.push_back(node_->Number(item, key + "[" + std::to_string(values.size()) + "]"));
   }
   return values;
@@ -338,11 +238,13 @@ std::vector<double> YamlReader::GetDoubles(const std::string& key) const {
 
 std::vector<std::vector<double>> YamlReader::GetRows(const std::string& key) const {
   std::vector<std::vector<double>> rows;
-  for (const YAML::Node& row : node_->RequireSequence(key)) {
+  for (const YamlValue& row : node_->RequireList(key).children) {
     const std::string row_key = key + "[" + std::to_string(rows.size()) + "]";
-    if (!row.IsSequence()) node_->FailAt(row, row_key, "must be a list, is " + Describe(row));
+    if (row.kind != Kind::kList) {
+      node_->FailAt(&row, row_key, "must be a list, is " + Describe(row));
+    }
     std::vector<double>& numbers = rows.emplace_back();
-    for (const YAML::Node& item : row) {
+    for (const YamlValue& item : row.children) {
       numbers.push_back(node_->Number(item, row_key + "[" + std::to_string(numbers.size()) + "]"));
     }
   }
@@ -363,19 +265,20 @@ Eigen::Vector3d YamlReader::GetVector3(const std::string& key) const { return Ge
 Eigen::Vector3d YamlReader::GetPositiveVector3(const std::string& key) const {
   const Eigen::Vector3d value = GetVector3(key);
   for (int i = 0; i < 3; ++i) {
-    node_->CheckPositive(value(i), node_->Find(key)[i], key + "[" + std::to_string(i) + "]");
+    node_->CheckPositive(value(i), node_->Require(key).children[static_cast<std::size_t>(i)],
+                         key + "[" + std::to_string(i) + "]");
   }
   return value;
 }
 
 std::vector<std::string> YamlReader::GetStrings(const std::string& key) const {
   std::vector<std::string> values;
-  for (const YAML::Node& item : node_->RequireSequence(key)) {
-    if (!item.IsScalar()) {
-      node_->FailAt(item, key + "[" + std::to_string(values.size()) + "]",
+  for (const YamlValue& item : node_->RequireList(key).children) {
+    if (item.kind != Kind::kScalar) {
+      node_->FailAt(&item, key + "[" + std::to_string(values.size()) + "]",
                     "must be a word, is " + Describe(item));
     }
-    values.push_back(item.Scalar());
+    values.push_back(item.text);
   }
   return values;
 }
@@ -398,40 +301,66 @@ Pose YamlReader::GetPose(const std::string& key) const {
   return Pose::FromRollPitchYaw(rpy, p);
 }
 
-void YamlReader::Set(const std::string& path, const std::string& value, const std::string& origin) {
-  const auto fail = [&](const std::string& why) { throw InputError(origin + " " + path, why); };
+YamlReader YamlReader::With(const std::string& path, const std::string& value,
+                            const std::string& by) const {
+  const auto fail = [&](const std::string& why) { throw InputError(by + " " + path, why); };
   if (FindInvalidUtf8(value) < value.size()) fail("must be UTF-8, is " + Quote(value));
-  CheckText(value, origin + " " + path);
-  const std::vector<std::string> keys = KeysOf(path);
-  if (keys.empty()) fail("is no key");
-  YAML::Node node = node_->yaml;
-  for (std::size_t i = 0; i + 1 < keys.size(); ++i) {
-    const YAML::Node next = ChildOf(node, keys[i]);
-    if (!next.IsDefined()) fail("leads nowhere: there is no " + Quote(keys[i]));
-    node.reset(next);
-  }
-  if (node.IsSequence() && !ChildOf(node, keys.back()).IsDefined()) {
-    fail("leads nowhere: there is no item " + Quote(keys.back()));
-  }
-  if (!node.IsSequence() && !node.IsMap()) fail("leads nowhere: what is there holds no keys");
-  try {
-    const YAML::Node leaf = YAML::Load(value + "\n...\n");
-    if (node.IsSequence()) {
-      node[std::stoul(keys.back())] = leaf;
-    } else {
-      node[keys.back()] = leaf;
+  const std::vector<YamlStep> steps = ParseYamlPath(path);
+  if (steps.empty()) fail("is no path: it must be written as a.b or a[0].b");
+  auto top = std::make_shared<YamlValue>(*node_->value);
+  YamlValue* at = top.get();
+  for (const YamlStep& step : steps) {
+    const bool is_last = &step == &steps.back();
+    if (step.key.empty()) {
+      if (at->kind != Kind::kList) fail("leads nowhere: what is there is no list");
+      if (step.index >= at->children.size()) {
+        fail("leads nowhere: there is no " + Quote(std::to_string(step.index)));
+      }
+      at = &at->children[step.index];
+      continue;
     }
-  } catch (const YAML::Exception& error) {
-    fail("is not valid YAML: " + error.msg);
+    if (at->kind == Kind::kList) fail("leads nowhere: items of a list are written [0], [1], ...");
+    if (at->kind != Kind::kMap) fail("leads nowhere: what is there holds no keys");
+    if (is_last && at->Find(step.key) == nullptr) at->children.emplace_back().key = step.key;
+    YamlValue* const next = at->Find(step.key);
+    if (next == nullptr) fail("leads nowhere: there is no " + Quote(step.key));
+    at = next;
   }
-  (*node_->set)[path] = origin;
+  YamlValue set = ParseYaml(value, [&](int, const std::string& key, const std::string& why) {
+    return InputError(by + " " + path + (key.empty() ? "" : ": " + key), why);
+  });
+  MarkAsSet(set, by);
+  set.key = at->key;
+  *at = std::move(set);
+  return WithValue(std::move(top));
 }
 
-void YamlReader::Replace(const YamlReader& other) {
-  for (const auto& entry : other.node_->yaml) node_->yaml[entry.first.Scalar()] = entry.second;
+YamlReader YamlReader::Unasked() const { return WithValue(node_->value); }
+
+YamlReader YamlReader::With(const YamlReader& part) const {
+  auto top = std::make_shared<YamlValue>(*node_->value);
+  for (const YamlValue& child : part.node_->value->children) {
+    if (YamlValue* const own = top->Find(child.key)) {
+      *own = child;
+    } else {
+      top->children.push_back(child);
+    }
+  }
+  return WithValue(std::move(top));
 }
 
-bool YamlReader::IsScalar(const std::string& key) const { return node_->Find(key).IsScalar(); }
+YamlReader YamlReader::WithValue(std::shared_ptr<const YamlValue> value) const {
+  auto node = std::make_unique<Node>();
+  node->value = std::move(value);
+  node->file = node_->file;
+  node->path = node_->path;
+  return YamlReader(std::move(node));
+}
+
+bool YamlReader::IsScalar(const std::string& key) const {
+  const YamlValue* const found = node_->Find(key);
+  return found != nullptr && found->kind == Kind::kScalar;
+}
 
 YamlReader YamlReader::GetMap(const std::string& key) const {
   return YamlReader(node_->Child(node_->Require(key), key));
@@ -439,7 +368,7 @@ YamlReader YamlReader::GetMap(const std::string& key) const {
 
 std::vector<YamlReader> YamlReader::GetMaps(const std::string& key) const {
   std::vector<YamlReader> maps;
-  for (const YAML::Node& item : node_->RequireSequence(key)) {
+  for (const YamlValue& item : node_->RequireList(key).children) {
     maps.push_back(YamlReader(node_->Child(item, key + "[" + std::to_string(maps.size()) + "]")));
   }
   return maps;
@@ -447,25 +376,29 @@ std::vector<YamlReader> YamlReader::GetMaps(const std::string& key) const {
 
 std::vector<std::string> YamlReader::Keys() const {
   std::vector<std::string> keys;
-  for (const auto& entry : node_->yaml) keys.push_back(entry.first.Scalar());
+  for (const YamlValue& child : node_->value->children) keys.push_back(child.key);
   return keys;
 }
 
 void YamlReader::CheckNoUnknownKeys() const {
-  for (const auto& entry : node_->yaml) {
-    const std::string& key = entry.first.Scalar();
-    if (node_->known.count(key) == 0) {
-      const std::string why = "is not a known key (known here: " + Joined(node_->known) + ")";
-      node_->BlameSetting(node_->PathOf(key), why);
-      throw InputError(node_->file, Node::LineOf(entry.first, node_->line), node_->PathOf(key),
-                       why);
-    }
+  for (const YamlValue& child : node_->value->children) {
+    if (node_->known.count(child.key) != 0) continue;
+    const std::string path = node_->PathOf(child.key);
+    const std::string why = "is not a known key (known here: " + Joined(node_->known) + ")";
+    if (!child.setting.empty()) throw InputError(child.setting + " " + path, why);
+    throw InputError(node_->file, child.key_line, path, why);
   }
 }
 
 int YamlReader::Line(const std::string& key) const {
-  const YAML::Node node = node_->Find(key);
-  return node.IsDefined() ? Node::LineOf(node, node_->line) : node_->line;
+  const YamlValue* const found = node_->Find(key);
+  return (found == nullptr ? *node_->value : *found).line;
+}
+
+std::map<std::string, int> YamlReader::Lines() const {
+  std::map<std::string, int> lines;
+  AddLines(*node_->value, node_->path, lines);
+  return lines;
 }
 
 void YamlReader::Fail(const std::string& key, const std::string& why) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -8,6 +9,8 @@
 #include "sidestep/core/pose.h"
 
 namespace sidestep {
+
+struct YamlValue;
 
 /// A strict view of one map of a YAML file. Every getter names the key it wants; whatever is wrong
 /// becomes an InputError `FILE:LINE: KEY: WHY`. Call CheckNoUnknownKeys() last: a key that nobody
@@ -52,15 +55,19 @@ class YamlReader {
   /// A map {position_m: [x, y, z], rpy_rad: [r, p, y]}; rpy_rad may be left out.
   Pose GetPose(const std::string& key) const;
 
-  /// Sets the value at a path such as `planner.epsilon_m` or `moving_obstacles[0].shape` to what
-  /// `value` says in YAML; where the path leads through maps and lists that exist, its last key may
-  /// be new. What is then found wrong with it is reported as `ORIGIN PATH: WHY`, e.g. `--set
-  /// planner.epsilon_m: must be >= 0, is -1`.
-  /// @throws InputError if the path leads nowhere or the value is not YAML.
-  void Set(const std::string& path, const std::string& value, const std::string& origin);
+  /// The same map, of which nothing has been asked for yet.
+  YamlReader Unasked() const;
 
-  /// Takes over every key of `other`, a part of the same file, in place of this one's.
-  void Replace(const YamlReader& other);
+  /// This map with `value`, in YAML, at a path such as `planner.epsilon_m` or
+  /// `moving_obstacles[0].shape` (core/yaml_tree.h); where the path leads through maps and lists
+  /// that exist, its last key may be new. What is then found wrong with it is reported as `BY PATH:
+  /// WHY`, e.g. `--set planner.epsilon_m: must be >= 0, is -1`; so is what is wrong with a list or
+  /// map of which it is a part.
+  /// @throws InputError if it is no path, leads nowhere, or the value is not YAML.
+  YamlReader With(const std::string& path, const std::string& value, const std::string& by) const;
+
+  /// This map with every key of `part`, of the same file, in place of its own.
+  YamlReader With(const YamlReader& part) const;
 
   /// True if the value of `key` is a scalar (and not a list or a map).
   bool IsScalar(const std::string& key) const;
@@ -75,6 +82,10 @@ class YamlReader {
   /// The line of the value of `key` (of the map itself if it is absent), counted from 1.
   int Line(const std::string& key) const;
 
+  /// The lines of everything in this map, by its path; 0 of what was set by With. Items of lists
+  /// are there only if they are maps, or were set.
+  std::map<std::string, int> Lines() const;
+
   /// Throws the InputError for `key`, or for an item of its list by "key[3]", at its line (or at
   /// the map's own line if it is absent).
   [[noreturn]] void Fail(const std::string& key, const std::string& why) const;
@@ -82,6 +93,7 @@ class YamlReader {
  private:
   struct Node;
   explicit YamlReader(std::unique_ptr<Node> node);
+  YamlReader WithValue(std::shared_ptr<const YamlValue> value) const;
   std::unique_ptr<Node> node_;
 };
 

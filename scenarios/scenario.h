@@ -157,13 +157,17 @@ struct Scenario {
   /// already.
   std::map<std::string, double> drawn;
 
-  /// Lines of what only other modules can judge (names of robots, configurations, ...), by its path
-  /// in the file, so that they can complain as the reader does; 0 of a value that a setting gave.
+  /// Lines of the file by path (YamlReader::Lines), so that others can complain of what only they
+  /// can judge (names of robots, configurations, ...) as the reader does; 0 of what a setting gave.
   std::map<std::string, int> lines;
 };
 
-/// What to throw where the value of `key` (a path in the file, as in `lines`) is wrong.
-InputError WrongValue(const Scenario& scenario, const std::string& key, const std::string& why);
+/// What to throw where the value of `key` (a path in the file) is wrong: `FILE:LINE: KEY: WHY`, or
+/// `--set KEY: WHY` where a person set it, or a part of it.
+/// @param against the paths of what it does not agree with: where only one of them was set, that is
+///   blamed, `--set AGAINST: KEY: WHY`.
+InputError WrongValue(const Scenario& scenario, const std::string& key, const std::string& why,
+                      const std::vector<std::string>& against = {});
 
 /// Makes every moving obstacle `factor` times as fast, at each moment of its motion: speeds, their
 /// limits and accelerations alike, so that what was a scenario stays one.
@@ -185,10 +189,11 @@ Eigen::Vector3d DirectionAt(const Motion& motion, EpisodeTime t);
 std::vector<std::string> ScenarioNames(const std::string& directory);
 
 /// What a person sets apart from the file, by name: one of the file's choices to choose from, or a
-/// value to put in the place of a key, by its path (core/yaml_reader.h).
+/// value to put in the place of a key, by its path (core/yaml_tree.h).
 using Settings = std::map<std::string, std::string>;
 
-/// Reads a scenario file, with the chosen parts and the settings in place.
+/// Reads a scenario file, with the chosen parts and the settings in place. Options that are not
+/// chosen are checked too, each as if it alone were chosen.
 /// @throws InputError FILE:LINE: KEY: WHY, or `--set KEY: WHY` for what is wrong with a setting.
 Scenario LoadScenario(const std::string& path, const Settings& settings = {});
 /// The same from text; `name` stands for the file in messages.

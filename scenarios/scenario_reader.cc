@@ -34,20 +34,21 @@ constexpr double kLeastSigmaObs_m = 1e-5, kMostSigmaObs_m = 1e3;
 constexpr double kLeastQc = 1e-6, kMostQc = 1e6;
 constexpr double kLeastScale = 0.001;  // of a limit
 constexpr double kMostSigmas = 100;
+constexpr double kFarthest_m = 1e6;  // beyond, positions have no tenth of a micrometre
 
 void ReadRobot(const YamlReader& top, Scenario& scenario) {
   const YamlReader map = top.GetMap("robot");
   scenario.robot = map.GetString("model");
   scenario.X_WB = map.GetPose("base");
+  if (scenario.X_WB.translation().cwiseAbs().maxCoeff() > kFarthest_m) {
+    throw WrongValue(scenario, "robot.base.position_m", "must be within 1000 km");
+  }
   scenario.mount = map.Has("mount") ? map.GetString("mount") : "";
-  scenario.lines["robot.model"] = map.Line("model");
-  scenario.lines["robot.mount"] = map.Line("mount");
   map.CheckNoUnknownKeys();
 }
 
 void ReadConfiguration(const YamlReader& map, const std::string& key, std::string& name,
-                       Eigen::VectorXd& q, Scenario& scenario) {
-  scenario.lines["task." + key] = map.Line(key);
+                       Eigen::VectorXd& q) {
   if (map.IsScalar(key)) {
     name = map.GetString(key);
     return;
@@ -59,10 +60,9 @@ void ReadConfiguration(const YamlReader& map, const std::string& key, std::strin
 
 void ReadTask(const YamlReader& top, Scenario& scenario) {
   const YamlReader map = top.GetMap("task");
-  ReadConfiguration(map, "start", scenario.start_name, scenario.q_start, scenario);
-  ReadConfiguration(map, "goal", scenario.goal_name, scenario.q_goal, scenario);
+  ReadConfiguration(map, "start", scenario.start_name, scenario.q_start);
+  ReadConfiguration(map, "goal", scenario.goal_name, scenario.q_goal);
   scenario.dwell_s = map.Has("dwell_s") ? map.GetNonNegative("dwell_s") : 0;
-  scenario.lines["task.dwell_s"] = map.Line("dwell_s");
   map.CheckNoUnknownKeys();
 }
 
@@ -73,13 +73,18 @@ void ReadHorizon(const YamlReader& top, Scenario& scenario) {
   if (scenario.horizon_s > kMaxHorizon) map.Fail("duration_s", "must be at most 60 s");
   const double steps = scenario.horizon_s / scenario.step_s;
   if (std::abs(steps - std::round(steps)) > 1e-6 || std::round(steps) < 4) {
-    map.Fail("step_s", "must divide duration_s into at least 4 whole steps");
+    throw WrongValue(scenario, "horizon.step_s",
+                     "must divide duration_s into at least 4 whole steps", {"horizon.duration_s"});
   }
-  if (std::round(steps) >= kMaxStates) map.Fail("step_s", "makes more than 1000 steps");
+  if (std::round(steps) >= kMaxStates) {
+    throw WrongValue(scenario, "horizon.step_s", "makes more than 1000 steps",
+                     {"horizon.duration_s"});
+  }
   if (scenario.step_s < kLeastStep_s) map.Fail("step_s", "must be at least 0.001 s");
   map.CheckNoUnknownKeys();
   if (scenario.dwell_s > scenario.horizon_s) {
-    throw WrongValue(scenario, "task.dwell_s", "must not exceed the horizon");
+    throw WrongValue(scenario, "task.dwell_s", "must not exceed the horizon",
+                     {"horizon.duration_s"});
   }
 }
 
@@ -101,12 +106,14 @@ void ReadWorkspace(const YamlReader& top, Scenario& scenario) {
   map.CheckNoUnknownKeys();
 }
 
+bool IsPlainName(const std::string& name) {
+  return std::all_of(name.begin(), name.end(),
+                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; });
+}
+
 std::string ReadName(const YamlReader& map, std::set<std::string>& names) {
   const std::string name = map.GetString("name");
-  const bool plain = std::all_of(name.begin(), name.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '_' || c == '-';
-  });
-  if (!plain) map.Fail("name", "must be letters, digits, _ and -, is '" + name + "'");
+  if (!IsPlainName(name)) map.Fail("name", "must be letters, digits, _ and -, is '" + name + "'");
   if (!names.insert(name).second) map.Fail("name", "'" + name + "' is taken");
   return name;
 }
@@ -115,9 +122,7 @@ void ReadStaticBoxes(const YamlReader& top, Scenario& scenario, std::set<std::st
   if (!top.Has("static_boxes")) return;
   for (const YamlReader& map : top.GetMaps("static_boxes")) {
     StaticBox box;
-    const std::string index = std::to_string(scenario.static_boxes.size());
     box.name = ReadName(map, names);
-    scenario.lines["static_boxes[" + index + "].name"] = map.Line("name");
     const Eigen::Vector3d center = map.GetVector3("center_m");
     const Eigen::Vector3d rpy =
         map.Has("rpy_rad") ? map.GetVector3("rpy_rad") : Eigen::Vector3d(0, 0, 0);
@@ -311,15 +316,11 @@ void ReadMovingObstacles(const YamlReader& top, const std::optional<std::string>
   if (!top.Has("moving_obstacles")) return;
   for (const YamlReader& map : top.GetMaps("moving_obstacles")) {
     MovingObstacle obstacle;
-    const std::string index = std::to_string(scenario.moving_obstacles.size());
     obstacle.name = ReadName(map, names);
-    scenario.lines["moving_obstacles[" + index + "].name"] = map.Line("name");
     obstacle.shape = ReadShape(map);
     obstacle.rpy_rad = map.Has("rpy_rad") ? map.GetVector3("rpy_rad") : Eigen::Vector3d(0, 0, 0);
     ReadMotion(map, folder, obstacle);
-    scenario.lines["moving_obstacles[" + index + "].motion"] = map.Line("motion");
     obstacle.appearance = map.Has("appearance") ? map.GetString("appearance") : "";
-    scenario.lines["moving_obstacles[" + index + "].appearance"] = map.Line("appearance");
     map.CheckNoUnknownKeys();
     scenario.moving_obstacles.push_back(obstacle);
   }
@@ -328,11 +329,12 @@ void ReadMovingObstacles(const YamlReader& top, const std::optional<std::string>
 void ReadPlanner(const YamlReader& top, Scenario& scenario) {
   const YamlReader map = top.GetMap("planner");
   scenario.planner = map.GetString("name");
-  scenario.lines["planner.name"] = map.Line("name");
   scenario.epsilon_m = map.GetNonNegative("epsilon_m");
   if (scenario.epsilon_m > kMaxMarginCells * scenario.grid.cell_m) {
-    map.Fail("epsilon_m",
-             "must be at most " + std::to_string(kMaxMarginCells) + " cells of the workspace");
+    throw WrongValue(
+        scenario, "planner.epsilon_m",
+        "must be at most " + std::to_string(kMaxMarginCells) + " cells of the workspace",
+        {"workspace.cell_m"});
   }
   const auto within = [&](const char* key, double value, double least, double most) {
     if (value < least || value > most) {
@@ -385,64 +387,92 @@ void ReadReplanning(const YamlReader& top, Scenario& scenario) {
   const YamlReader map = top.GetMap("replanning");
   scenario.replan_rate_hz = ReadRate(map, "rate_hz");
   scenario.latency_s = map.GetNonNegative("latency_s");
-  if (scenario.latency_s > scenario.horizon_s) map.Fail("latency_s", "must not exceed the horizon");
+  if (scenario.latency_s > scenario.horizon_s) {
+    throw WrongValue(scenario, "replanning.latency_s", "must not exceed the horizon",
+                     {"horizon.duration_s"});
+  }
   map.CheckNoUnknownKeys();
 }
 
 void ReadPerception(const YamlReader& top, Scenario& scenario) {
   scenario.knowledge = top.GetString("knowledge");
   scenario.predictor = top.Has("predictor") ? top.GetString("predictor") : "kalman_cv";
-  scenario.lines["knowledge"] = top.Line("knowledge");
-  scenario.lines["predictor"] = top.Line("predictor");
   scenario.sensor = ReadSensorSettings(top.GetMap("sensor"));
-  scenario.lines["sensor.name"] = scenario.sensor.line;
   const int seed = top.GetInt("seed");
   if (seed < 0) top.Fail("seed", "must be >= 0, is " + std::to_string(seed));
   scenario.seed = static_cast<std::uint64_t>(seed);
 }
 
 struct Choice {
-  std::string chosen;  // by default
-  YamlReader options;
+  std::string default_option;
+  std::vector<std::string> options;
+  YamlReader parts;  // what each option puts into place
 };
+using Choices = std::map<std::string, Choice>;
 
-std::map<std::string, Choice> ReadChoices(const YamlReader& top) {
-  std::map<std::string, Choice> choices;
-  if (!top.Has("choices")) return choices;
-  const YamlReader map = top.GetMap("choices");
+// Who set a key would otherwise depend on the order of the choices.
+void CheckKeysOfOptions(const std::string& name, const YamlReader& part,
+                        std::map<std::string, std::string>& choice_of_key) {
+  for (const std::string& key : part.Keys()) {
+    if (key == "choices") part.Fail(key, "cannot be chosen");
+    const std::string& other = choice_of_key.emplace(key, name).first->second;
+    if (other != name) part.Fail(key, "is set by the choice '" + other + "' as well");
+  }
+}
+
+Choices ReadChoices(const YamlReader& file) {
+  Choices choices;
+  if (!file.Has("choices")) return choices;
+  const YamlReader map = file.GetMap("choices");
+  std::map<std::string, std::string> choice_of_key;
   for (const std::string& name : map.Keys()) {
+    if (!IsPlainName(name)) map.Fail(name, "must be letters, digits, _ and -");
     // A study has factors of these names, and a setting of one would be taken for the other.
     for (const char* const taken : {"seed", "speed_m_s", "knowledge", "predictor"}) {
       if (name == taken)
         map.Fail(name, "is the name of something else that varies; choose another");
     }
     const YamlReader choice = map.GetMap(name);
-    YamlReader options = choice.GetMap("options");
-    const std::string chosen = choice.GetChoice("default", options.Keys());
+    YamlReader parts = choice.GetMap("options");
+    const std::vector<std::string> options = parts.Keys();
+    const std::string default_option = choice.GetChoice("default", options);
     choice.CheckNoUnknownKeys();
-    choices.emplace(name, Choice{chosen, std::move(options)});
+    for (const std::string& option : options) {
+      CheckKeysOfOptions(name, parts.GetMap(option), choice_of_key);
+    }
+    choices.emplace(name, Choice{default_option, options, std::move(parts)});
   }
   map.CheckNoUnknownKeys();
   return choices;
 }
 
-// Puts the chosen parts and the settings into place.
-void Settle(YamlReader& top, const Settings& settings, Scenario& scenario) {
-  const std::map<std::string, Choice> choices = ReadChoices(top);
+// The file with one option of each choice in place: those that the settings name, else the default.
+YamlReader Choose(const YamlReader& file, const Choices& choices, const Settings& settings,
+                  std::map<std::string, std::string>& chosen) {
+  YamlReader top = file.Unasked();
   for (const auto& [name, choice] : choices) {
     const auto setting = settings.find(name);
-    const std::string chosen = setting == settings.end() ? choice.chosen : setting->second;
-    const std::vector<std::string> options = choice.options.Keys();
-    if (std::find(options.begin(), options.end(), chosen) == options.end()) {
+    const std::string& option = setting == settings.end() ? choice.default_option : setting->second;
+    if (std::find(choice.options.begin(), choice.options.end(), option) == choice.options.end()) {
       throw InputError("--set " + name,
-                       "must be one of " + Joined(options) + ", is '" + chosen + "'");
+                       "must be one of " + Joined(choice.options) + ", is '" + option + "'");
     }
-    top.Replace(choice.options.GetMap(chosen));
-    scenario.choices[name] = chosen;
+    top = top.With(choice.parts.GetMap(option));
+    chosen[name] = option;
   }
+  return top;
+}
+
+// Puts the settings that are no choices into place.
+YamlReader Set(YamlReader top, const Choices& choices, const Settings& settings) {
   for (const auto& [path, value] : settings) {
-    if (choices.count(path) == 0) top.Set(path, value, "--set");
+    if (choices.count(path) != 0) continue;
+    if (path == "choices" || path.starts_with("choices.")) {
+      throw InputError("--set " + path, "is chosen by --set NAME=OPTION");
+    }
+    top = top.With(path, value, "--set");
   }
+  return top;
 }
 
 // A world to look at needs no robot; what a robot needs asks for one.
@@ -451,11 +481,17 @@ bool HasRobot(const YamlReader& top) {
   return std::any_of(keys.begin(), keys.end(), [&](const char* key) { return top.Has(key); });
 }
 
-// @param folder what the file's own references begin at; a text has none.
-Scenario Read(YamlReader top, const std::string& file, const std::optional<std::string>& folder,
-              const Settings& settings) {
+// Where a scenario was written.
+struct Origin {
+  std::string file;
+  std::optional<std::string> folder;  // what the file's own references begin at; a text has none
+};
+
+// What was chosen and set is in place.
+Scenario ReadSettled(const YamlReader& top, const Origin& origin) {
+  const auto& [file, folder] = origin;
   Scenario scenario;
-  Settle(top, settings, scenario);
+  scenario.lines = top.Lines();
   scenario.file = file;
   // A file's name may hold any bytes; that of a scenario is told in every kind of result.
   scenario.name = top.Has("name") ? top.GetString("name")
@@ -482,14 +518,8 @@ Scenario Read(YamlReader top, const std::string& file, const std::optional<std::
   ReadPerception(top, scenario);
   SeedMotions(scenario);
   DrawVariations(top, scenario);
+  top.Has("choices");
   top.CheckNoUnknownKeys();
-  for (auto& entry : scenario.lines) {
-    const std::string& key = entry.first;
-    const bool is_set = std::any_of(settings.begin(), settings.end(), [&](const auto& setting) {
-      return key == setting.first || key.rfind(setting.first + ".", 0) == 0;
-    });
-    if (is_set) entry.second = 0;
-  }
 
   const bool known = std::any_of(scenario.static_boxes.begin(), scenario.static_boxes.end(),
                                  [&](const StaticBox& box) { return box.name == scenario.mount; });
@@ -500,13 +530,62 @@ Scenario Read(YamlReader top, const std::string& file, const std::optional<std::
   return scenario;
 }
 
+// A fault in an option that nobody has chosen is told too: each is read as if it alone were chosen.
+void CheckOptions(const YamlReader& file, const Choices& choices, const Origin& origin) {
+  for (const auto& [name, choice] : choices) {
+    for (const std::string& option : choice.options) {
+      std::map<std::string, std::string> chosen;
+      ReadSettled(Choose(file, choices, {{name, option}}, chosen), origin);
+    }
+  }
+}
+
+Scenario Read(const YamlReader& file, const Origin& origin, const Settings& settings) {
+  const Choices choices = ReadChoices(file);
+  std::map<std::string, std::string> chosen;
+  YamlReader top = Choose(file, choices, settings, chosen);
+  Scenario scenario = ReadSettled(Set(std::move(top), choices, settings), origin);
+  scenario.choices = chosen;
+  CheckOptions(file, choices, origin);
+  return scenario;
+}
+
+// The path of what holds this one; empty at the top.
+std::string ParentOf(const std::string& path) {
+  const std::size_t end = path.find_last_of(".[");
+  return end == std::string::npos ? "" : path.substr(0, end);
+}
+
+// The line of `path`, or of the nearest that holds it.
+int LineOf(const Scenario& scenario, const std::string& path) {
+  for (std::string at = path; !at.empty(); at = ParentOf(at)) {
+    const auto found = scenario.lines.find(at);
+    if (found != scenario.lines.end()) return found->second;
+  }
+  return 1;
+}
+
+// What a person set of `path`: all of it, or the first part of it that was set.
+std::optional<std::string> SetPath(const Scenario& scenario, const std::string& path) {
+  if (LineOf(scenario, path) == 0) return path;
+  for (const auto& [part, line] : scenario.lines) {
+    const bool is_inside = part.starts_with(path + ".") || part.starts_with(path + "[");
+    if (is_inside && line == 0) return part;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
-InputError WrongValue(const Scenario& scenario, const std::string& key, const std::string& why) {
-  const auto found = scenario.lines.find(key);
-  const int line = found == scenario.lines.end() ? 1 : found->second;
-  if (line == 0) return InputError("--set " + key, why);
-  return InputError(scenario.file, line, key, why);
+InputError WrongValue(const Scenario& scenario, const std::string& key, const std::string& why,
+                      const std::vector<std::string>& against) {
+  if (const auto set = SetPath(scenario, key)) return InputError("--set " + *set, why);
+  for (const std::string& path : against) {
+    if (const auto set = SetPath(scenario, path)) {
+      return InputError("--set " + *set, key + ": " + why);
+    }
+  }
+  return InputError(scenario.file, LineOf(scenario, key), key, why);
 }
 
 std::vector<std::string> ScenarioNames(const std::string& directory) {
@@ -520,18 +599,18 @@ std::vector<std::string> ScenarioNames(const std::string& directory) {
 }
 
 Scenario LoadScenario(const std::string& path, const Settings& settings) {
-  return Read(YamlReader::FromFile(path), path, std::filesystem::path(path).parent_path().string(),
-              settings);
+  return Read(YamlReader::FromFile(path),
+              {path, std::filesystem::path(path).parent_path().string()}, settings);
 }
 
 Scenario ParseScenario(const std::string& text, const std::string& name, const Settings& settings) {
-  return Read(YamlReader::FromText(text, name), name, std::nullopt, settings);
+  return Read(YamlReader::FromText(text, name), {name, std::nullopt}, settings);
 }
 
 std::map<std::string, std::vector<std::string>> ScenarioChoices(const std::string& path) {
   std::map<std::string, std::vector<std::string>> options;
   for (const auto& [name, choice] : ReadChoices(YamlReader::FromFile(path))) {
-    options[name] = choice.options.Keys();
+    options[name] = choice.options;
   }
   return options;
 }

@@ -78,7 +78,6 @@ TagSettings ReadTags(const YamlReader& map) {
 SensorSettings ReadSensorSettings(const YamlReader& map) {
   SensorSettings settings;
   settings.name = map.GetString("name");
-  settings.line = map.Line("name");
   settings.rate_hz = map.GetPositive("rate_hz");
   if (settings.rate_hz > kMaxRateHz) map.Fail("rate_hz", "must be at most 1000");
   if (map.Has("cells")) {

@@ -56,8 +56,6 @@ struct SensorSettings {
   std::optional<OccupancyNoise> noise;
   std::optional<CameraSettings> camera;
   std::optional<TagSettings> tags;
-
-  int line = 0;  ///< of `sensor` in the file, for whoever judges what fits the name
 };
 
 /// Reads the map `sensor`. @throws InputError FILE:LINE: KEY: WHY.

@@ -29,7 +29,7 @@ constexpr Entry kSensors[] = {
 
 [[noreturn]] void Fail(const scenarios::Scenario& scenario, const std::string& key,
                        const std::string& why) {
-  throw InputError(scenario.file, scenario.sensor.line, "sensor." + key, why);
+  throw scenarios::WrongValue(scenario, "sensor." + key, why, {"sensor.name"});
 }
 
 // The scenario must hold the settings that the sensor needs, and none of another's.

@@ -1,5 +1,6 @@
 #include "sidestep/core/yaml_reader.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -177,6 +178,56 @@ TEST(YamlReader, FailPointsAtTheKeyOrAtItsMap) {
   const YamlReader top = YamlReader::FromText("a: 1\nb:\n  c: 2\n", "f.yaml");
   EXPECT_EQ(MessageOf([&]() { top.GetMap("b").Fail("c", "is odd"); }, ""), "f.yaml:3: b.c: is odd");
   EXPECT_EQ(MessageOf([&]() { top.Fail("none", "is odd"); }, ""), "f.yaml:1: none: is odd");
+}
+
+TEST(YamlReader, WithAValueChangesOnePlaceAndNoOther) {
+  const YamlReader top = YamlReader::FromText("a: &x {n: 1, m: [2, 3]}\nb: *x\n", "f.yaml");
+  const YamlReader changed = top.With("a.m[1]", "9", "--set").With("a.k", "new", "--set");
+  EXPECT_EQ(changed.GetMap("a").GetDoubles("m"), (std::vector<double>{2, 9}));
+  EXPECT_EQ(changed.GetMap("a").GetString("k"), "new");
+  EXPECT_EQ(changed.GetMap("b").GetDoubles("m"), (std::vector<double>{2, 3}));
+  EXPECT_EQ(top.GetMap("a").GetDoubles("m"), (std::vector<double>{2, 3}));
+}
+
+TEST(YamlReader, WithAPartHasItsKeysAtTheirOwnLines) {
+  const YamlReader top = YamlReader::FromText("n: 1\npart:\n  n: 2\n  odd: 3\n", "f.yaml");
+  const YamlReader changed = top.With(top.GetMap("part"));
+  EXPECT_EQ(changed.GetInt("n"), 2);
+  EXPECT_EQ(top.GetInt("n"), 1);
+  EXPECT_TRUE(changed.Has("part"));
+  EXPECT_EQ(MessageOf([&]() { changed.Fail("n", "is odd"); }, ""), "f.yaml:3: n: is odd");
+  EXPECT_EQ(MessageOf([&]() { changed.CheckNoUnknownKeys(); }, ""),
+            "f.yaml:4: odd: is not a known key (known here: n, part)");
+}
+
+TEST(YamlReader, KnowsTheLineOfEverythingInIt) {
+  const YamlReader top = YamlReader::FromText("a:\n  - {n: 1}\n  - {n: [2, 3]}\nb: 1\n", "f.yaml");
+  EXPECT_EQ(top.With("a[1].n[0]", "4", "--set").Lines(),
+            (std::map<std::string, int>{{"a", 2},
+                                        {"a[0]", 2},
+                                        {"a[0].n", 2},
+                                        {"a[1]", 3},
+                                        {"a[1].n", 3},
+                                        {"a[1].n[0]", 0},
+                                        {"b", 4}}));
+}
+
+// Each line has ten times as many values as the one before.
+TEST(YamlReader, RefusesAliasesThatAreWrittenOutToMoreThanFits) {
+  std::string text = "a0: [0]\n";
+  for (int n = 1; n < 12; ++n) {
+    const std::string alias = "*x" + std::to_string(n - 1) + ", ";
+    text += "a" + std::to_string(n) + ": &x" + std::to_string(n) + " [";
+    for (int i = 0; i < 10; ++i) text += n == 1 ? "1, " : alias;
+    text += "]\n";
+  }
+  EXPECT_THAT(MessageOf([&]() { YamlReader::FromText(text, "f.yaml"); }, ""),
+              ::testing::HasSubstr("holds more than a million values, with its aliases"));
+}
+
+TEST(YamlReader, RefusesAnAliasOfWhatItIsAPartOf) {
+  EXPECT_THAT(MessageOf([&]() { YamlReader::FromText("a: &x [1, *x]\n", "f.yaml"); }, ""),
+              ::testing::StartsWith("f.yaml:1: a[1]"));
 }
 
 }  // namespace

@@ -440,7 +440,7 @@ TEST_P(EverySensor, ServesEveryKindOfKnowledge) {
 
 TEST_P(EverySensor, RefusesTheSettingsOfAnother) {
   scenarios::Scenario scenario = Scene();
-  scenario.sensor.line = 12;
+  scenario.lines["sensor"] = 12;
   scenario.sensor.noise = scenarios::OccupancyNoise{};
   scenario.sensor.camera = scenarios::CameraSettings{};
   scenario.sensor.tags = scenarios::TagSettings{};

@@ -238,7 +238,59 @@ TEST(Settings, ThatAreWrongAreBlamedOnThePersonWhoSetThem) {
             "--set seed.of: leads nowhere: what is there holds no keys");
   EXPECT_THAT(Complaint({{"planner.qc", "[1"}}),
               ::testing::StartsWith("--set planner.qc: is not valid YAML"));
-  EXPECT_EQ(Complaint({{"..", "1"}}), "--set ..: is no key");
+}
+
+TEST(Settings, HaveOneSpelling) {
+  const std::string no_path = ": is no path: it must be written as a.b or a[0].b";
+  for (const std::string path :
+       {"", "..", "planner..qc", ".seed", "seed.", "planner.", "[0]", "moving_obstacles[0]name",
+        "moving_obstacles[0", "moving_obstacles0]", "moving_obstacles[00].name",
+        "moving_obstacles[+0].name", "moving_obstacles[].name", "moving_obstacles[-1].name",
+        "moving_obstacles.[0].name", "moving_obstacles[99999999999999999999]"}) {
+    EXPECT_EQ(Complaint({{path, "1"}}), "--set " + path + no_path);
+  }
+  EXPECT_EQ(Complaint({{"moving_obstacles.0.name", "b"}}),
+            "--set moving_obstacles.0.name: leads nowhere: items of a list are written [0], [1], "
+            "...");
+  EXPECT_EQ(Complaint({{"planner[0]", "b"}}),
+            "--set planner[0]: leads nowhere: what is there is no list");
+  EXPECT_EQ(WithSettings({{"moving_obstacles[0].name", "b"}}).moving_obstacles[0].name, "b");
+}
+
+TEST(Settings, ChooseByTheNameOfAChoiceAlone) {
+  EXPECT_EQ(Complaint({{"choices.pair.default", "near"}}),
+            "--set choices.pair.default: is chosen by --set NAME=OPTION");
+}
+
+// What is wrong may be what holds the value, what it lacks, or what it does not agree with.
+TEST(Settings, AreBlamedForWhatTheyMakeWrongElsewhere) {
+  EXPECT_THAT(Complaint({{"workspace.cells[0]", "1"}}),
+              ::testing::StartsWith("--set workspace.cells[0]: must be whole numbers from 2"));
+  EXPECT_EQ(Complaint({{"robot", "{model: panda}"}}), "--set robot.base: is missing");
+  EXPECT_EQ(Complaint({{"robot", "{model: panda, model: wam}"}}),
+            "--set robot: model: is given twice");
+  EXPECT_THAT(Complaint({{"moving_obstacles[0].motion.circle", "{radius_m: 1}"}}),
+              ::testing::StartsWith("--set moving_obstacles[0].motion.circle: must hold exactly"));
+  EXPECT_EQ(Complaint({{"horizon.duration_s", "0.35"}}),
+            "--set horizon.duration_s: horizon.step_s: must divide duration_s into at least 4 "
+            "whole steps");
+  EXPECT_EQ(Complaint({{"replanning.latency_s", "4"}}),
+            "--set replanning.latency_s: must not exceed the horizon");
+  EXPECT_EQ(Complaint({{"workspace.cell_m", "0.001"}, {"planner.epsilon_m", "0.3"}}),
+            "--set planner.epsilon_m: must be at most 256 cells of the workspace");
+}
+
+TEST(WrongValue, IsToldAtTheNearestLineThatThereIs) {
+  const Scenario scenario = WithSettings({{"task.goal", "c"}});
+  EXPECT_STREQ(WrongValue(scenario, "robot.base.rpy_rad", "is odd").what(),
+               "scene.yaml:3: robot.base.rpy_rad: is odd");
+  EXPECT_STREQ(WrongValue(scenario, "moving_obstacles[0].shape.sphere", "is odd").what(),
+               "scene.yaml:14: moving_obstacles[0].shape.sphere: is odd");
+  EXPECT_STREQ(WrongValue(scenario, "task", "is odd").what(), "--set task.goal: is odd");
+  EXPECT_STREQ(WrongValue(scenario, "task.start", "is odd").what(),
+               "scene.yaml:9: task.start: is odd");
+  EXPECT_STREQ(WrongValue(scenario, "task.start", "is odd", {"robot.model", "task.goal"}).what(),
+               "--set task.goal: task.start: is odd");
 }
 
 }  // namespace

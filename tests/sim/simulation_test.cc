@@ -250,7 +250,7 @@ TEST(Simulation, SaysWhatOfTheScenarioDoesNotFit) {
                   "two_link.yaml:9: task.start: two_link has no configuration 'asleep'")));
   scenario.start_name = "level";
   scenario.sensor.name = "nose";
-  scenario.sensor.line = 12;
+  scenario.lines["sensor"] = 12;
   EXPECT_THAT([&] { Simulation(scenario, TwoLink(scenario), kTestModels); },
               testing::ThrowsMessage<InputError>(
                   testing::StrEq("two_link.yaml:12: sensor.name: is not a known sensor (known: "
