@@ -7,7 +7,7 @@
 namespace sidestep::cli {
 namespace {
 
-// Words for which `sidestep list KIND` knows the values.
+// Words for which `sidestep list KIND --names` knows the values.
 struct Listed {
   const char* word;
   const char* kind;
@@ -26,7 +26,7 @@ std::string Join(const std::vector<std::string>& words, const char* separator) {
 std::string ValuesOf(const std::string& name) {
   for (const Listed& listed : kListed) {
     if (name == listed.word)
-      return std::string("$(\"$program\" list ") + listed.kind + " 2>/dev/null)";
+      return std::string("$(\"$program\" list ") + listed.kind + " --names 2>/dev/null)";
   }
   return "";
 }

@@ -1,4 +1,4 @@
-#include <map>
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -8,6 +8,7 @@
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/data_paths.h"
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/joined.h"
 #include "sidestep/planner/registry.h"
 #include "sidestep/robot/robot_model.h"
 #include "sidestep/scenarios/scenario.h"
@@ -18,101 +19,136 @@
 namespace sidestep::cli {
 namespace {
 
-// Those that have a robot, or those that have none.
-std::vector<std::string> NamesOfScenarios(const DataPaths& paths, bool with_robot) {
-  std::vector<std::string> names;
-  for (const std::string& name : scenarios::ScenarioNames(paths.scenarios)) {
-    const scenarios::Scenario scenario =
-        scenarios::LoadScenario(paths.scenarios + "/" + name + ".yaml");
-    if (scenario.robot.empty() != with_robot) names.push_back(name);
-  }
-  return names;
-}
+struct Item {
+  std::string name;
+  std::string note = "";  // further lines are indented already
+};
 
 struct Kind {
   const char* title;
-  std::vector<std::string> (*names)(const DataPaths&);
+  std::vector<Item> items;
 };
 
-std::vector<std::string> KnowledgeNames(const DataPaths&) {
-  std::vector<std::string> names;
-  for (const sdf::Knowledge knowledge : sdf::kAllKnowledge) names.push_back(ToString(knowledge));
-  return names;
+// Texts of files may hold line ends.
+std::string OneLine(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text.substr(0, text.find_last_not_of(' ') + 1);
 }
-
-const Kind kKinds[] = {
-    {"scenarios", [](const DataPaths& paths) { return NamesOfScenarios(paths, true); }},
-    {"field_scenes", [](const DataPaths& paths) { return NamesOfScenarios(paths, false); }},
-    {"robots", [](const DataPaths& paths) { return robot::RobotModel::ListNames(paths.models); }},
-    {"knowledge", &KnowledgeNames},
-    {"planners", [](const DataPaths&) { return planner::PlannerNames(); }},
-    {"predictors", [](const DataPaths&) { return sdf::PredictorNames(); }},
-    {"sensors", [](const DataPaths&) { return sim::SensorNames(); }},
-    {"metrics",
-     [](const DataPaths&) {
-       std::vector<std::string> names;
-       for (const bench::Metric& metric : bench::Metrics()) names.emplace_back(metric.name);
-       return names;
-     }},
-};
 
 // A line for each choice that a scenario leaves open.
 std::string ChoicesOf(const std::string& scenario_file) {
   std::string lines;
   for (const auto& [choice, options] : scenarios::ScenarioChoices(scenario_file)) {
-    std::string list;
-    for (const std::string& option : options) list += (list.empty() ? "" : "|") + option;
-    lines += "\n    --set " + choice + "=" + list;
+    lines += "\n    --set " + choice + "=" + Joined(options, "|");
   }
   return lines;
 }
 
-// Every name with its kind; scenarios and metrics with what they are.
-int ListAll() {
-  const DataPaths paths = FindDataPaths();
-  std::map<std::string, std::string> notes;
-  for (const std::string& name : scenarios::ScenarioNames(paths.scenarios)) {
-    const std::string file = paths.scenarios + "/" + name + ".yaml";
-    notes[name] = scenarios::LoadScenario(file).description + ChoicesOf(file);
-  }
-  for (const bench::Metric& metric : bench::Metrics()) {
-    notes[metric.name] = metric.meaning + std::string(" [") + metric.unit + "]";
-  }
-  for (const Kind& kind : kKinds) {
-    Print("{}\n", kind.title);
-    for (const std::string& name : kind.names(paths)) {
-      const auto note = notes.find(name);
-      if (note == notes.end()) {
-        Print("  {}\n", name);
-      } else {
-        Print("  {:<24} {}\n", name, note->second);
-      }
+// Everything that can be named, but for scenario files that are wrong: why is in `faults`.
+class Catalogue {
+ public:
+  explicit Catalogue(const DataPaths& paths) {
+    AddScenarios(paths.scenarios);
+    kinds_.push_back({"robots", Items(robot::RobotModel::ListNames(paths.models))});
+    Kind& knowledge = kinds_.emplace_back(Kind{"knowledge", {}});
+    for (const sdf::Knowledge one : sdf::kAllKnowledge) {
+      knowledge.items.push_back({ToString(one)});
+    }
+    kinds_.push_back({"planners", Items(planner::PlannerNames(), &planner::MeaningOfPlanner)});
+    kinds_.push_back({"predictors", Items(sdf::PredictorNames(), &sdf::MeaningOfPredictor)});
+    kinds_.push_back({"sensors", Items(sim::SensorNames(), &sim::MeaningOfSensor)});
+    Kind& metrics = kinds_.emplace_back(Kind{"metrics", {}});
+    for (const bench::Metric& metric : bench::Metrics()) {
+      metrics.items.push_back(
+          {metric.name, metric.meaning + std::string(" [") + metric.unit + "]"});
     }
   }
-  return 0;
+
+  const std::vector<Kind>& kinds() const { return kinds_; }
+  const std::vector<std::string>& faults() const { return faults_; }
+
+ private:
+  static std::vector<Item> Items(const std::vector<std::string>& names,
+                                 std::string (*meaning)(const std::string&) = nullptr) {
+    std::vector<Item> items;
+    for (const std::string& name : names) {
+      items.push_back({name, meaning == nullptr ? "" : meaning(name)});
+    }
+    return items;
+  }
+
+  void AddScenarios(const std::string& folder) {
+    Kind with_robot{"scenarios", {}}, without{"field_scenes", {}};
+    for (const std::string& name : scenarios::ScenarioNames(folder)) {
+      const std::string file = folder + "/" + name + ".yaml";
+      try {
+        const scenarios::Scenario scenario = scenarios::LoadScenario(file);
+        Kind& kind = scenario.robot.empty() ? without : with_robot;
+        kind.items.push_back({name, OneLine(scenario.description) + ChoicesOf(file)});
+      } catch (const InputError& error) {
+        faults_.push_back(error.what());
+      }
+    }
+    kinds_.push_back(std::move(with_robot));
+    kinds_.push_back(std::move(without));
+  }
+
+  std::vector<Kind> kinds_;
+  std::vector<std::string> faults_;
+};
+
+void PrintItems(const Kind& kind, const char* indent) {
+  for (const Item& item : kind.items) {
+    if (item.note.empty()) {
+      Print("{}{}\n", indent, item.name);
+    } else {
+      Print("{}{:<24} {}\n", indent, item.name, item.note);
+    }
+  }
 }
 
-int ListNames(const std::string& kind_name) {
-  std::string known;
-  for (const Kind& kind : kKinds) {
-    known += (known.empty() ? "" : ", ") + std::string(kind.title);
-    if (kind_name != kind.title) continue;
-    for (const std::string& name : kind.names(FindDataPaths())) Print("{}\n", name);
-    return 0;
+// Each fault has a line of its own, after all that is in order.
+int List(const std::string& kind_name, bool only_names) {
+  const Catalogue catalogue(FindDataPaths());
+  std::vector<std::string> known;
+  bool found = kind_name.empty();
+  for (const Kind& kind : catalogue.kinds()) {
+    known.emplace_back(kind.title);
+    if (!kind_name.empty() && kind_name != kind.title) continue;
+    found = true;
+    if (only_names) {
+      for (const Item& item : kind.items) Print("{}\n", item.name);
+    } else {
+      if (kind_name.empty()) Print("{}\n", kind.title);
+      PrintItems(kind, kind_name.empty() ? "  " : "");
+    }
   }
-  throw InputError("KIND", "must be one of " + known + ", is '" + kind_name + "'");
+  if (!found) {
+    throw InputError("KIND", "must be one of " + Joined(known) + ", is '" + kind_name + "'");
+  }
+  const bool asks_for_scenarios =
+      kind_name.empty() || kind_name == "scenarios" || kind_name == "field_scenes";
+  if (!asks_for_scenarios) return 0;
+  for (const std::string& fault : catalogue.faults()) PrintError("{}\n", fault);
+  return catalogue.faults().empty() ? 0 : 2;
 }
+
+struct ListOptions {
+  std::string kind;
+  bool only_names = false;
+};
 
 }  // namespace
 
 void AddListCommand(CommandLine& line) {
-  auto kind = std::make_shared<std::string>();
+  auto options = std::make_shared<ListOptions>();
   CLI::App* const list = line.app.add_subcommand(
       "list",
       "List what can be named: scenarios, field scenes, robots, knowledge, planners, "
       "predictors, sensors, metrics");
-  list->add_option("KIND", *kind, "Only the names of this kind, one a line, for scripts");
-  list->callback([&line, kind] { line.exit_code = kind->empty() ? ListAll() : ListNames(*kind); });
+  list->add_option("KIND", options->kind, "Only this kind");
+  list->add_flag("--names", options->only_names, "Only the names, one a line, for scripts");
+  list->callback([&line, options] { line.exit_code = List(options->kind, options->only_names); });
 }
 
 }  // namespace sidestep::cli

@@ -6,7 +6,7 @@
 
 namespace sidestep::planner {
 
-#define SIDESTEP_PLANNER(name, make, file) \
+#define SIDESTEP_PLANNER(name, meaning, make, file) \
   std::unique_ptr<Planner> make(const robot::RobotModel&, const PlannerSettings&);
 #include "sidestep/planner/planners.def"
 #undef SIDESTEP_PLANNER
@@ -15,13 +15,23 @@ namespace {
 
 struct Entry {
   const char* name;
+  const char* meaning;
   std::unique_ptr<Planner> (*make)(const robot::RobotModel& robot, const PlannerSettings& settings);
 };
 constexpr Entry kPlanners[] = {
-#define SIDESTEP_PLANNER(name, make, file) {name, &(make)},
+#define SIDESTEP_PLANNER(name, meaning, make, file) {name, meaning, &(make)},
 #include "sidestep/planner/planners.def"
 #undef SIDESTEP_PLANNER
 };
+
+const Entry& Find(const std::string& name) {
+  std::string known;
+  for (const Entry& entry : kPlanners) {
+    if (name == entry.name) return entry;
+    known += known.empty() ? entry.name : std::string(", ") + entry.name;
+  }
+  throw std::invalid_argument("unknown planner '" + name + "'; there are: " + known);
+}
 
 }  // namespace
 
@@ -31,15 +41,12 @@ std::vector<std::string> PlannerNames() {
   return names;
 }
 
+std::string MeaningOfPlanner(const std::string& name) { return Find(name).meaning; }
+
 std::unique_ptr<Planner> MakePlanner(const std::string& name, const robot::RobotModel& robot,
                                      const PlannerSettings& settings) {
   CheckPlannerSettings(settings);
-  std::string known;
-  for (const Entry& entry : kPlanners) {
-    if (name == entry.name) return entry.make(robot, settings);
-    known += known.empty() ? entry.name : std::string(", ") + entry.name;
-  }
-  throw std::invalid_argument("unknown planner '" + name + "'; there are: " + known);
+  return Find(name).make(robot, settings);
 }
 
 std::string CeresVersion() { return CERES_VERSION_STRING; }

@@ -16,6 +16,9 @@ std::string CeresVersion();
 /// The names of all planners.
 std::vector<std::string> PlannerNames();
 
+/// What one does, in a line. @throws std::invalid_argument for an unknown name.
+std::string MeaningOfPlanner(const std::string& name);
+
 /// @throws std::invalid_argument for an unknown name or settings out of range.
 std::unique_ptr<Planner> MakePlanner(const std::string& name, const robot::RobotModel& robot,
                                      const PlannerSettings& settings);

@@ -9,7 +9,7 @@
 
 namespace sidestep::sim {
 
-#define SIDESTEP_SENSOR(name, settings, make, file) \
+#define SIDESTEP_SENSOR(name, meaning, settings, make, file) \
   std::unique_ptr<robot::Sensor> make(const scenarios::Scenario&, const World&);
 #include "sidestep/sim/sensors.def"
 #undef SIDESTEP_SENSOR
@@ -18,11 +18,12 @@ namespace {
 
 struct Entry {
   std::string_view name;
+  const char* meaning;
   std::string_view settings;  // as sensors.def says
   std::unique_ptr<robot::Sensor> (*make)(const scenarios::Scenario&, const World&);
 };
 constexpr Entry kSensors[] = {
-#define SIDESTEP_SENSOR(name, settings, make, file) {name, settings, &(make)},
+#define SIDESTEP_SENSOR(name, meaning, settings, make, file) {name, meaning, settings, &(make)},
 #include "sidestep/sim/sensors.def"
 #undef SIDESTEP_SENSOR
 };
@@ -57,6 +58,13 @@ std::vector<std::string> SensorNames() {
   for (const Entry& entry : kSensors) names.emplace_back(entry.name);
   std::sort(names.begin(), names.end());
   return names;
+}
+
+std::string MeaningOfSensor(const std::string& name) {
+  for (const Entry& entry : kSensors) {
+    if (name == entry.name) return entry.meaning;
+  }
+  throw std::invalid_argument("unknown sensor '" + name + "'");
 }
 
 std::unique_ptr<robot::Sensor> MakeSensor(const scenarios::Scenario& scenario, const World& world) {

@@ -13,6 +13,9 @@ namespace sidestep::sim {
 /// The simulated sensors there are, sorted.
 std::vector<std::string> SensorNames();
 
+/// What one sees, in a line. @throws std::invalid_argument for an unknown name.
+std::string MeaningOfSensor(const std::string& name);
+
 /// Makes the scenario's sensor. @param world must outlive it.
 /// @throws InputError for a name that is not known.
 std::unique_ptr<robot::Sensor> MakeSensor(const scenarios::Scenario& scenario, const World& world);

@@ -4,7 +4,7 @@
 
 namespace sidestep::sdf {
 
-#define SIDESTEP_PREDICTOR(name, make, file) std::unique_ptr<ObstaclePredictor> make();
+#define SIDESTEP_PREDICTOR(name, meaning, make, file) std::unique_ptr<ObstaclePredictor> make();
 #include "sidestep/sdf/prediction/predictors.def"
 #undef SIDESTEP_PREDICTOR
 
@@ -12,13 +12,23 @@ namespace {
 
 struct Entry {
   const char* name;
+  const char* meaning;
   std::unique_ptr<ObstaclePredictor> (*make)();
 };
 constexpr Entry kPredictors[] = {
-#define SIDESTEP_PREDICTOR(name, make, file) {name, &(make)},
+#define SIDESTEP_PREDICTOR(name, meaning, make, file) {name, meaning, &(make)},
 #include "sidestep/sdf/prediction/predictors.def"
 #undef SIDESTEP_PREDICTOR
 };
+
+const Entry& Find(const std::string& name) {
+  std::string known;
+  for (const Entry& entry : kPredictors) {
+    if (name == entry.name) return entry;
+    known += known.empty() ? entry.name : std::string(", ") + entry.name;
+  }
+  throw std::invalid_argument("unknown predictor '" + name + "'; there are: " + known);
+}
 
 }  // namespace
 
@@ -28,13 +38,10 @@ std::vector<std::string> PredictorNames() {
   return names;
 }
 
+std::string MeaningOfPredictor(const std::string& name) { return Find(name).meaning; }
+
 std::unique_ptr<ObstaclePredictor> MakePredictor(const std::string& name) {
-  std::string known;
-  for (const Entry& entry : kPredictors) {
-    if (name == entry.name) return entry.make();
-    known += known.empty() ? entry.name : std::string(", ") + entry.name;
-  }
-  throw std::invalid_argument("unknown predictor '" + name + "'; there are: " + known);
+  return Find(name).make();
 }
 
 }  // namespace sidestep::sdf

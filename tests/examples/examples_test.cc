@@ -79,7 +79,7 @@ TEST_F(Examples, AreListedByTheirNames) {
       {"sensors", "blinking"},    {"metrics", "longest_blindness_s"},
       {"robots", "pointer"},      {"scenarios", "pointer_and_ball"}};
   for (const auto& [kind, name] : names) {
-    EXPECT_THAT(Sidestep({"list", kind}).out, HasSubstr(std::string(name) + "\n"));
+    EXPECT_THAT(Sidestep({"list", kind, "--names"}).out, HasSubstr(std::string(name) + "\n"));
   }
 }
 
