@@ -12,7 +12,7 @@ namespace sidestep::cli {
 namespace {
 
 bool Write(std::string_view text, std::FILE* stream) {
-  const std::string escaped = EscapeInvalidUtf8(text);
+  const std::string escaped = EscapeControls(text);
   return std::fwrite(escaped.data(), 1, escaped.size(), stream) == escaped.size();
 }
 

@@ -8,7 +8,7 @@
 namespace sidestep::cli {
 
 /// Everything that commands say goes through here, so that a terminal gets text: bytes that are not
-/// UTF-8, as the name of a file may hold, are written out (core/utf8.h).
+/// UTF-8, as the name of a file may hold, and control characters are written out (core/utf8.h).
 /// @throws InputError if standard output cannot take it, as on a full disk. That a reader has gone
 /// away, `| head`, is no error.
 void PrintText(std::string_view text);       // standard output

@@ -5,7 +5,11 @@
 namespace sidestep {
 namespace {
 
-constexpr char kHexadecimal[] = "0123456789ABCDEF";
+std::string Escaped(char c) {
+  constexpr char kHexadecimal[] = "0123456789ABCDEF";
+  const auto byte = static_cast<unsigned char>(c);
+  return {'\\', 'x', kHexadecimal[byte / 16], kHexadecimal[byte % 16]};
+}
 
 }  // namespace
 
@@ -47,10 +51,25 @@ std::string EscapeInvalidUtf8(std::string_view text) {
     const std::size_t valid = FindInvalidUtf8(text);
     escaped += text.substr(0, valid);
     if (valid == text.size()) return escaped;
-    const auto byte = static_cast<unsigned char>(text[valid]);
-    escaped += {'\\', 'x', kHexadecimal[byte / 16], kHexadecimal[byte % 16]};
+    escaped += Escaped(text[valid]);
     text.remove_prefix(valid + 1);
   }
+}
+
+std::string EscapeControls(std::string_view text) {
+  const std::string valid = EscapeInvalidUtf8(text);
+  std::string escaped;
+  for (std::size_t at = 0; at < valid.size();) {
+    const std::size_t length = Utf8Length(std::string_view(valid).substr(at));
+    const std::string character = valid.substr(at, length);
+    at += length;
+    const auto first = static_cast<unsigned char>(character.front());
+    const bool is_layout = first == '\n' || first == '\t' || first == '\r';
+    const bool is_upper_control = first == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0;
+    const bool is_control = (first < 0x20 && !is_layout) || first == 0x7F || is_upper_control;
+    for (const char c : character) escaped += is_control ? Escaped(c) : std::string(1, c);
+  }
+  return escaped;
 }
 
 std::string Utf8Prefix(std::string_view text, std::size_t max_bytes) {

@@ -18,6 +18,11 @@ std::size_t FindInvalidUtf8(std::string_view text);
 /// arguments may hold any bytes; what is printed, or stored in a format of text, may not.
 std::string EscapeInvalidUtf8(std::string_view text);
 
+/// `text` fit for a terminal: what EscapeInvalidUtf8 writes out, and control characters too, which
+/// could move the cursor or change what is shown: those below U+0020 but for line ends, tabs and
+/// returns, U+007F, and U+0080 to U+009F; e.g. `\x1B`.
+std::string EscapeControls(std::string_view text);
+
 /// At most the first `max_bytes` bytes, and no part of a character.
 std::string Utf8Prefix(std::string_view text, std::size_t max_bytes);
 
