@@ -29,22 +29,9 @@ std::optional<Outcome> OutcomeFromString(const std::string& word) {
   return std::nullopt;
 }
 
-std::string Describe(Outcome outcome, bool reached) {
-  switch (outcome) {
-    case Outcome::kAborted:
-      return "ABORTED: could not be completed";
-    case Outcome::kCollision:
-      return "TOUCHED something";
-    case Outcome::kUnjudged:
-      return reached ? "at the goal, contact unjudged" : "not at the goal, unjudged";
-    case Outcome::kGoal:
-      return "reached the goal, touched nothing";
-    case Outcome::kTimeout:
-      return "did not reach the goal in time";
-    case Outcome::kPlannerFailed:
-      return "found no plan";
-  }
-  return "";
+std::string Tell(Outcome outcome, const std::string& touched) {
+  const char* const link = outcome == Outcome::kCollision ? " with " : ", touched ";
+  return ToString(outcome) + (touched.empty() ? "" : link + touched);
 }
 
 Outcome Judge(const record::Recording& recording, bool reached) {

@@ -25,9 +25,8 @@ std::string ToString(Outcome outcome);
 /// None for any other word.
 std::optional<Outcome> OutcomeFromString(const std::string& word);
 
-/// The outcome in words that need no glossary. Where nobody judged contact, `reached` decides what
-/// they say of the goal.
-std::string Describe(Outcome outcome, bool reached);
+/// The outcome's word and, if something was touched, what: "collision with hsr".
+std::string Tell(Outcome outcome, const std::string& touched);
 
 /// The outcome of a whole recording whose metrics are filled. @param reached the goal.
 Outcome Judge(const record::Recording& recording, bool reached);

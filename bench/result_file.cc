@@ -13,6 +13,7 @@
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/text_file.h"
 #include "sidestep/core/yaml_json.h"
+#include "sidestep/record/questions.h"
 
 namespace sidestep::bench {
 namespace {
@@ -56,6 +57,11 @@ void Flatten(const Json& value, const std::string& path,
 
 }  // namespace
 
+std::string TouchedBy(const record::Recording& recording) {
+  const std::optional<record::Touch> touch = record::FirstTouch(recording);
+  return touch ? touch->object : "";
+}
+
 std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& scenario,
                        const RunIdentity& identity,
                        const std::map<std::string, std::string>& versions) {
@@ -71,6 +77,8 @@ std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& s
   json["drawn"] = scenario.drawn;
   json["outcome"] = ToString(result.outcome);
   json["reason"] = result.reason.empty() ? Json(nullptr) : Json(result.reason);
+  const std::string touched = TouchedBy(result.recording);
+  json["touched"] = touched.empty() ? Json(nullptr) : Json(touched);
   for (const Metric& metric : Metrics()) {
     json[metric.name] = ValueOf(metric, result.recording.metrics.at(metric.name));
   }
@@ -96,6 +104,8 @@ ResultSummary ReadResult(const std::string& path) {
     const std::optional<Outcome> outcome = OutcomeFromString(word);
     if (!outcome) throw InputError(path, "is not a whole result: no outcome is '" + word + "'");
     summary.outcome = *outcome;
+    const Json& touched = json.at("touched");
+    if (!touched.is_null()) summary.touched = touched.get<std::string>();
     Flatten(json.at("parameters"), "", summary.parameters);
     for (const Metric& metric : Metrics()) {
       const Json& value = json.at(metric.name);

@@ -8,9 +8,13 @@
 
 namespace sidestep::bench {
 
-/// The text of result.json: outcome, metrics, identity, versions; the whole scenario as run, under
-/// "parameters", with the keys of a scenario file; and, under "wall_clock" alone, everything that
-/// may differ between equal runs. Numbers that do not apply are null.
+/// The name of what the robot touched first, empty if nothing.
+std::string TouchedBy(const record::Recording& recording);
+
+/// The text of result.json (every key is in docs/results.md): outcome, metrics, identity, versions;
+/// the whole scenario as run, under "parameters", with the keys of a scenario file; and, under
+/// "wall_clock" alone, everything that may differ between equal runs. Numbers that do not apply are
+/// null.
 /// @param versions of the code and libraries, of the machine's C library variant, ...
 std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& scenario,
                        const RunIdentity& identity,
@@ -20,6 +24,7 @@ std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& s
 struct ResultSummary {
   std::string scenario, knowledge;
   Outcome outcome = Outcome::kAborted;
+  std::string touched;  ///< first; empty: nothing
   /// Of the scenario as run, by their paths in a scenario file, e.g. "planner.epsilon_m": "0.2".
   std::map<std::string, std::string> parameters;
   std::map<std::string, double> metrics;  ///< NaN where null

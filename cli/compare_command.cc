@@ -1,5 +1,7 @@
+#include <fmt/core.h>
+
 #include <algorithm>
-#include <cmath>
+#include <charconv>
 #include <memory>
 #include <set>
 #include <string>
@@ -25,10 +27,6 @@ std::string Number(const bench::ResultSummary& result, const char* metric, doubl
   return FiniteText(format, scale * result.metrics.at(metric));
 }
 
-std::string Verdict(const bench::ResultSummary& result) {
-  return bench::Describe(result.outcome, !std::isnan(result.metrics.at("time_to_goal_s")));
-}
-
 // The parameters in which some result differs from the first; a text says nothing of a run.
 std::vector<std::string> FindDifferences(const std::vector<bench::ResultSummary>& results) {
   std::set<std::string> keys;
@@ -50,11 +48,55 @@ std::vector<std::string> FindDifferences(const std::vector<bench::ResultSummary>
   return sorted;
 }
 
-// The last word of a path, or all of it where another path ends in the same word.
+// The last words of a path that no other path ends in.
 std::string ShortName(const std::string& key, const std::vector<std::string>& keys) {
-  const auto last = [](const std::string& path) { return path.substr(path.rfind('.') + 1); };
-  const auto is_alike = [&](const std::string& other) { return last(other) == last(key); };
-  return std::count_if(keys.begin(), keys.end(), is_alike) > 1 ? key : last(key);
+  for (std::size_t dot = key.rfind('.'); dot != std::string::npos; dot = key.rfind('.', dot - 1)) {
+    const std::string end = key.substr(dot);
+    const auto has_end = [&](const std::string& other) { return ("." + other).ends_with(end); };
+    if (std::count_if(keys.begin(), keys.end(), has_end) == 1) return end.substr(1);
+    if (dot == 0) break;
+  }
+  return key;
+}
+
+// Numbers, also those of a list, to four digits.
+std::string Rounded(const std::string& value) {
+  const char* at = value.data();
+  const char* const end = at + value.size();
+  std::string rounded;
+  while (at != end) {
+    double number = 0;
+    const auto parsed = std::from_chars(at, end, number);
+    if (parsed.ec == std::errc()) {
+      rounded += fmt::format("{:.4g}", number);
+      at = parsed.ptr;
+    } else if (at != value.data() || *at == '[') {
+      rounded += *at++;
+    } else {
+      return value;  // a word
+    }
+  }
+  return rounded;
+}
+
+// The values of a parameter, one a result: with as few digits as tell them apart.
+std::vector<std::string> ShortValues(const std::vector<bench::ResultSummary>& results,
+                                     const std::string& key) {
+  std::vector<std::string> values, rounded;
+  for (const bench::ResultSummary& result : results) {
+    values.push_back(ParameterOf(result, key));
+    rounded.push_back(Rounded(values.back()));
+  }
+  const auto count = [](const std::vector<std::string>& texts) {
+    return std::set<std::string>(texts.begin(), texts.end()).size();
+  };
+  return count(rounded) == count(values) ? rounded : values;
+}
+
+// Texts of files may hold line ends.
+std::string OneLine(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
 }
 
 using Line = std::vector<std::string>;
@@ -83,10 +125,12 @@ int Compare(const std::vector<std::string>& folders) {
   const std::size_t num_shown = std::min(differences.size(), kMostDifferences);
 
   Line heads = {"folder", "planner knows"}, units = {"", ""};
+  std::vector<std::vector<std::string>> shown;
   for (std::size_t i = 0; i < num_shown; ++i) {
     heads.push_back(ShortName(differences[i], differences));
+    shown.push_back(ShortValues(results, differences[i]));
   }
-  heads.push_back("what happened");
+  heads.push_back("outcome");
   units.resize(heads.size());
   const std::size_t num_words = heads.size();
   for (const char* const head : {"contact", "clearance", "goal", "GP cost", "jerk RMS", "cycle"}) {
@@ -100,10 +144,8 @@ int Compare(const std::vector<std::string>& folders) {
   for (std::size_t n = 0; n < results.size(); ++n) {
     const bench::ResultSummary& result = results[n];
     Line& line = lines.emplace_back(Line{folders[n], result.knowledge});
-    for (std::size_t i = 0; i < num_shown; ++i) {
-      line.push_back(ParameterOf(result, differences[i]));
-    }
-    line.push_back(Verdict(result));
+    for (const std::vector<std::string>& values : shown) line.push_back(OneLine(values[n]));
+    line.push_back(bench::Tell(result.outcome, result.touched));
     line.push_back(Number(result, "first_contact_s", 1, "{:.2f}"));
     line.push_back(Number(result, "min_clearance_m", 1e3, "{:.0f}"));
     line.push_back(Number(result, "time_to_goal_s", 1, "{:.2f}"));

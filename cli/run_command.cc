@@ -1,5 +1,4 @@
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +14,6 @@
 #include "sidestep/cli/wiring.h"
 #include "sidestep/core/atomic_file.h"
 #include "sidestep/core/number_text.h"
-#include "sidestep/record/questions.h"
 #include "sidestep/record/recording_file.h"
 
 namespace sidestep::cli {
@@ -29,18 +27,19 @@ struct RunOptions {
   bool json = false;
 };
 
-void PrintSummary(const bench::EpisodeResult& result, const std::string& out) {
+void PrintSummary(const bench::EpisodeResult& result, double dwell_s, const std::string& out) {
   const auto& metrics = result.recording.metrics;
   const auto number = [&](const char* name, double scale, const char* format) {
     return FiniteText(format, scale * metrics.at(name));
   };
-  Print("outcome          {}\n", ToString(result.outcome));
+  Print("outcome          {}\n", bench::Tell(result.outcome, bench::TouchedBy(result.recording)));
   if (!result.reason.empty()) Print("reason           {}\n", result.reason);
-  const std::optional<record::Touch> touch = record::FirstTouch(result.recording);
-  Print("first contact    {}{}\n", number("first_contact_s", 1, "{:.3f} s"),
-        touch && !touch->object.empty() ? ", with " + touch->object : "");
+  Print("first contact    {}\n", number("first_contact_s", 1, "{:.3f} s"));
   Print("least clearance  {}\n", number("min_clearance_m", 1e3, "{:.1f} mm"));
   Print("time to goal     {}\n", number("time_to_goal_s", 1, "{:.3f} s"));
+  if (dwell_s > 0)
+    Print("stayed for {:<5} {}\n", fmt::format("{:g} s", dwell_s),
+          number("time_to_dwell_s", 1, "until {:.3f} s"));
   Print("GP cost          {}\n", number("gp_cost", 1, "{:.2f}"));
   Print("jerk RMS         {}\n", number("jerk_rms", 1, "{:.1f} rad/s^3"));
   if (metrics.at("samples_outside_grid") > 0) {
@@ -76,7 +75,7 @@ int Run(const RunOptions& options) {
   if (options.json) {
     PrintText(json);
   } else {
-    PrintSummary(result, out);
+    PrintSummary(result, problem.scenario.dwell_s, out);
   }
   bench::RequireWhole(result);  // what there is has been written
   return 0;

@@ -51,14 +51,11 @@ TEST(Outcome, IsReadBackFromItsWord) {
   EXPECT_FALSE(OutcomeFromString("success").has_value());
 }
 
-TEST(Outcome, IsDescribedInWordsOfItsOwn) {
-  for (const Outcome one : kAllOutcomes) {
-    EXPECT_LE(Describe(one, true).size(), 34u) << "the column of `sidestep compare`";
-    for (const Outcome other : kAllOutcomes) {
-      EXPECT_EQ(one == other, Describe(one, true) == Describe(other, true));
-    }
-  }
-  EXPECT_NE(Describe(Outcome::kUnjudged, true), Describe(Outcome::kUnjudged, false));
+TEST(Outcome, IsToldWithWhatWasTouched) {
+  EXPECT_EQ(Tell(Outcome::kCollision, "hsr"), "collision with hsr");
+  EXPECT_EQ(Tell(Outcome::kAborted, "hsr"), "aborted, touched hsr");
+  EXPECT_EQ(Tell(Outcome::kCollision, ""), "collision");
+  EXPECT_EQ(Tell(Outcome::kGoal, ""), "goal");
 }
 
 }  // namespace
