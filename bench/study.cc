@@ -1,6 +1,5 @@
 #include "sidestep/bench/study.h"
 
-#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <functional>
@@ -26,30 +25,6 @@ void CheckFinite(const record::Recording& recording) {
   }
 }
 
-// A row's value of a factor; without a name, all rows are alike.
-std::string ValueOf(const StudyRow& row, const std::string& factor) {
-  return factor.empty() ? "episodes" : row.factors.at(factor);
-}
-
-std::vector<std::string> ValuesOf(const std::vector<StudyRow>& rows, const std::string& factor) {
-  std::vector<std::string> values;
-  for (const StudyRow& row : rows) {
-    const std::string value = ValueOf(row, factor);
-    if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
-  }
-  return values;
-}
-
-struct Tally {
-  int goal = 0, episodes = 0;
-
-  void Count(const StudyRow& row) {
-    ++episodes;
-    goal += row.outcome == ToString(Outcome::kGoal) ? 1 : 0;
-  }
-  std::string Text() const { return std::to_string(goal) + "/" + std::to_string(episodes); }
-};
-
 // The row that `run` fills; what goes wrong is a row too.
 StudyRow MakeRow(const scenarios::Scenario& scenario, const Factors& factors,
                  const std::function<void(StudyRow&)>& run) {
@@ -74,7 +49,7 @@ std::string NumberField(const std::map<std::string, double>& numbers, const std:
 StudyRow FailedRow(const Factors& factors, const std::string& why) {
   StudyRow row;
   row.factors = factors;
-  row.outcome = "failed";
+  row.outcome = kFailed;
   row.error = why;
   return row;
 }
@@ -126,38 +101,6 @@ std::string StudyCsv(const std::vector<StudyRow>& rows) {
     csv.AddRow(fields);
   }
   return csv.text();
-}
-
-std::string OutcomeTable(const std::vector<StudyRow>& rows, const std::string& down,
-                         const std::string& across) {
-  const std::vector<std::string> columns = ValuesOf(rows, across);
-  const std::vector<std::string> lines =
-      down.empty() ? std::vector<std::string>() : ValuesOf(rows, down);
-  std::map<std::string, std::map<std::string, Tally>> cells;
-  std::map<std::string, Tally> totals;
-  std::map<std::string, std::map<std::string, int>> endings;
-  for (const StudyRow& row : rows) {
-    const std::string column = ValueOf(row, across);
-    cells[ValueOf(row, down)][column].Count(row);
-    totals[column].Count(row);
-    ++endings[row.outcome][column];
-  }
-  std::string text = "| " + down + " |";
-  for (const std::string& column : columns) text += " " + column + " |";
-  text += "\n|---|";
-  for (std::size_t i = 0; i < columns.size(); ++i) text += "---|";
-  for (const std::string& line : lines) {
-    text += "\n| " + line + " |";
-    for (const std::string& column : columns) text += " " + cells[line][column].Text() + " |";
-  }
-  text += "\n| all |";
-  for (const std::string& column : columns) text += " " + totals[column].Text() + " |";
-  for (auto& [outcome, counts] : endings) {
-    if (outcome == ToString(Outcome::kGoal)) continue;
-    text += "\n| " + outcome + " |";
-    for (const std::string& column : columns) text += " " + std::to_string(counts[column]) + " |";
-  }
-  return text + "\n";
 }
 
 }  // namespace sidestep::bench

@@ -15,11 +15,14 @@ namespace sidestep::bench {
 /// What tells the episodes of a study apart, e.g. behaviour: stop, seed: 3.
 using Factors = std::map<std::string, std::string>;
 
+/// The outcome, beside those of episodes, of what could not be run to its end.
+inline constexpr const char* kFailed = "failed";
+
 /// One episode of a study: what was varied, and what came of it.
 struct StudyRow {
   Factors factors;                        ///< the same names in all rows
   std::map<std::string, double> drawn;    ///< what its seed decided (Scenario::drawn)
-  std::string outcome;                    ///< a word of Outcome, or "failed"
+  std::string outcome;                    ///< a word of Outcome, or kFailed
   std::string error;                      ///< why, if it failed; EpisodeResult::reason
   std::map<std::string, double> metrics;  ///< empty if it failed
   RunIdentity identity;                   ///< empty if its scenario was refused
@@ -47,11 +50,5 @@ StudyRow RunStudySearch(const scenarios::Scenario& scenario, const robot::RobotM
 
 /// All rows, with a column for each factor, each value that was drawn and each metric.
 std::string StudyCsv(const std::vector<StudyRow>& rows);
-
-/// A Markdown table: how many episodes reached the goal touching nothing, of how many, for each
-/// value of one factor (down) and another (across), in the order in which they come; below it how
-/// the others ended. Without `down` only the sums; without `across` one column.
-std::string OutcomeTable(const std::vector<StudyRow>& rows, const std::string& down,
-                         const std::string& across);
 
 }  // namespace sidestep::bench

@@ -100,11 +100,15 @@ void StudyLog::Read(bool resume) {
   std::size_t begin = first_line.size();
   int number = 2;
   for (std::size_t end; (end = all.find('\n', begin)) != std::string::npos; begin = end + 1) {
+    const std::string place = path_ + ":" + std::to_string(number);
     try {
       StudyRow row = FromJson(json::parse(all.substr(begin, end - begin)));
+      if (row.outcome != kFailed && !OutcomeFromString(row.outcome)) {
+        throw InputError(place, "outcome: no outcome is '" + row.outcome + "'");
+      }
       rows_[row.factors] = std::move(row);
     } catch (const json::exception&) {
-      throw InputError(path_ + ":" + std::to_string(number), "is no row of a study");
+      throw InputError(place, "is no row of a study");
     }
     ++number;
   }

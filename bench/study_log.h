@@ -24,6 +24,8 @@ class StudyLog {
   /// Of the rows that were there: the latest with these factors, or null. Its trace and command are
   /// not filled.
   const StudyRow* Find(const Factors& factors) const;
+  /// All rows that were there, the latest with its factors each.
+  const std::map<Factors, StudyRow>& rows() const { return rows_; }
   /// On the disk when it returns. Only from one thread at a time.
   /// @throws InputError if it cannot be written.
   void Append(const StudyRow& row);

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string>
 
 namespace sidestep::cli {
 
 /// What every sub-command shares with main().
 struct CommandLine {
   CLI::App app{"Sidestep: plan a robot arm's motion around things that move"};
+  std::string text;   ///< as it was typed, quoted for a shell
   int exit_code = 0;  ///< set by the sub-command that ran
 };
 

@@ -7,6 +7,7 @@
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/command_tree.h"
 #include "sidestep/cli/console.h"
+#include "sidestep/cli/shell_quote.h"
 #include "sidestep/cli/versions.h"
 #include "sidestep/core/input_error.h"
 
@@ -34,6 +35,8 @@ void CheckCommandName(const CLI::App& app, const std::string& name) {
 
 int Run(int argc, char** argv) {
   sidestep::cli::CommandLine line;
+  line.text = "sidestep";
+  for (int i = 1; i < argc; ++i) line.text += " " + sidestep::cli::ShellQuoted(argv[i]);
   line.app.name("sidestep");
   line.app.set_version_flag("--version", sidestep::cli::VersionText());
   line.app.require_subcommand(1);

@@ -118,7 +118,7 @@ std::string RunCommandOf(const std::string& scenario, const bench::Factors& fact
   return command;
 }
 
-TableAxes ChooseAxes(const std::vector<bench::Factors>& cases, TableAxes axes) {
+bench::TableAxes ChooseAxes(const std::vector<bench::Factors>& cases, bench::TableAxes axes) {
   std::vector<std::string> varying;
   std::string known;
   for (const auto& entry : cases.front()) {
@@ -137,6 +137,9 @@ TableAxes ChooseAxes(const std::vector<bench::Factors>& cases, TableAxes axes) {
   };
   check("--down", axes.down);
   check("--across", axes.across);
+  if (!axes.down.empty() && axes.down == axes.across) {
+    throw InputError("--across", "'" + axes.across + "' is listed down already");
+  }
   const bool one_goes_down = axes.down.empty() && varying.size() == 1;
   if (axes.across.empty() && !varying.empty() && !one_goes_down) {
     for (const std::string& factor :

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sidestep/bench/study.h"
+#include "sidestep/bench/study_page.h"
 #include "sidestep/cli/data_paths.h"
 #include "sidestep/cli/wiring.h"
 
@@ -35,14 +36,9 @@ bool IsSearch(const bench::Factors& factors);
 /// What runs one case alone, to the same trace; empty for a search.
 std::string RunCommandOf(const std::string& scenario, const bench::Factors& factors);
 
-/// The factors that a table lists down and across.
-struct TableAxes {
-  std::string down, across;  ///< empty: none
-};
-
 /// Fills what is empty, from what varies beside seeds: the kinds of knowledge or else the
 /// predictors go across, and what comes first of the others down.
-/// @throws InputError for a name that is no factor.
-TableAxes ChooseAxes(const std::vector<bench::Factors>& cases, TableAxes asked);
+/// @throws InputError for a name that is no factor, or asked for twice.
+bench::TableAxes ChooseAxes(const std::vector<bench::Factors>& cases, bench::TableAxes asked);
 
 }  // namespace sidestep::cli

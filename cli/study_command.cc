@@ -7,12 +7,14 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "sidestep/bench/study.h"
 #include "sidestep/bench/study_log.h"
+#include "sidestep/bench/study_page.h"
 #include "sidestep/bench/task_pool.h"
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
@@ -36,8 +38,9 @@ struct StudyOptions {
   StudySpace space;
   int jobs = 0;
   bool resume = false;
-  TableAxes axes;
-  std::string traces = "none", out = "out/study";
+  bench::TableAxes axes;
+  std::string traces = "none", out;
+  std::string command;  // as it was typed
 };
 
 bool IsFailure(const bench::StudyRow& row) {
@@ -50,20 +53,20 @@ class Study {
       : options_(options), paths_(std::move(paths)), cases_(StudyCases(options.space, paths_)) {}
 
   int Run() {
-    const TableAxes axes = ChooseAxes(cases_, options_.axes);
-    CheckBeforeTheWork();
-    out_ = MakeOutFolder(options_.out, {"study.csv", "study.md"});
+    const bench::TableAxes axes = ChooseAxes(cases_, options_.axes);
+    const bench::StudySubject subject = CheckBeforeTheWork();
+    out_ = MakeOutFolder(options_.out.empty() ? "out/study/" + subject.scenario : options_.out,
+                         {"study.csv", "study.md"});
     bench::StudyLog log(out_ + "/study.jsonl", options_.resume);
     CheckResumed(log);
     if (options_.traces != "none") MakeOutFolder(out_ + "/traces", {});
     const std::vector<bench::StudyRow> rows = RunCases(log);
     WriteFile(out_ + "/study.csv", bench::StudyCsv(rows));
-    const std::string table = bench::OutcomeTable(rows, axes.down, axes.across);
-    WriteFile(out_ + "/study.md", table);
-    Print("{}\nwritten {}/study.csv, {}/study.md\n", table, out_, out_);
+    WriteFile(out_ + "/study.md", bench::StudyPage(subject, rows, axes));
+    Print("{}\nwritten {}/study.csv, {}/study.md\n", bench::OutcomeTable(rows, axes), out_, out_);
     PrintFailures(rows);
     const bool all_whole = std::none_of(rows.begin(), rows.end(), [](const bench::StudyRow& row) {
-      return row.outcome == "failed" || row.outcome == ToString(bench::Outcome::kAborted);
+      return row.outcome == bench::kFailed || row.outcome == ToString(bench::Outcome::kAborted);
     });
     return all_whole ? 0 : 1;
   }
@@ -84,31 +87,49 @@ class Study {
   }
 
   // Complains where no combination makes sense, and where seeds would be counted for nothing. Of
-  // those that differ only by their seeds the first stands for all.
-  void CheckBeforeTheWork() const {
+  // those that differ only by their seeds the first stands for all. Returns what the first says.
+  bench::StudySubject CheckBeforeTheWork() const {
     std::exception_ptr first_error;
-    bool any_is_sound = false, seed_matters = false;
+    std::optional<bench::StudySubject> subject;
+    bool seed_matters = false;
     for (const bench::Factors& one : cases_) {
       const auto seed = one.find("seed");
       if (options_.space.episodes > 0 && seed->second != "1") continue;
       try {
         const Problem problem = Load(one);
-        any_is_sound = true;
+        if (!subject) {
+          subject = {problem.scenario.name, problem.scenario.description, options_.command};
+        }
         seed_matters = seed_matters || !scenarios::WhatTheSeedChanges(problem.scenario).empty();
       } catch (const InputError& error) {
         if (!first_error) first_error = std::current_exception();
       }
     }
-    if (!any_is_sound) std::rethrow_exception(first_error);
+    if (!subject) std::rethrow_exception(first_error);
     if (options_.space.episodes > 0 && !seed_matters) {
       throw InputError("--episodes",
                        "a seed changes nothing in this scenario: it has no variations, nothing "
                        "walks at random, and its sensor is perfect");
     }
+    return *subject;
   }
 
-  // Rows of something else must not stand in one table with those to come.
+  // Rows of something else must not stand in one table with those to come, and none that is there
+  // may be left out of it.
   void CheckResumed(const bench::StudyLog& log) const {
+    const auto fail = [&](const std::string& what) {
+      throw InputError(out_ + "/study.jsonl",
+                       what + ": choose another folder by --out, or remove this one");
+    };
+    const std::set<bench::Factors> asked(cases_.begin(), cases_.end());
+    for (const auto& [factors, row] : log.rows()) {
+      if (asked.count(factors) > 0) continue;
+      std::string episode;
+      for (const auto& [factor, value] : factors) {
+        episode += (episode.empty() ? "" : ", ") + factor + " " + value;
+      }
+      fail("holds an episode that is not asked for (" + episode + "); ask for it too");
+    }
     ForAll([&](std::size_t i) {
       const bench::StudyRow* const row = log.Find(cases_[i]);
       if (row == nullptr) return;
@@ -120,7 +141,7 @@ class Study {
       if (then.method != now.method) changed = "another --search";
       if (then.scenario != now.scenario) changed = "another scenario";
       if (changed == nullptr) return;
-      throw InputError(out_ + "/study.jsonl", std::string("holds rows of ") + changed);
+      fail(std::string("holds rows of ") + changed);
     });
   }
 
@@ -222,7 +243,7 @@ void AddStudyCommand(CommandLine& line) {
           "--episodes", space.episodes,
           "Episodes of each combination, seeds 1, 2, ...: what a seed changes the scenario "
           "says (variations, random walks, the sensor's noise)")
-      ->check(NumberFrom(0, 100000));
+      ->check(NumberFrom(1, 100000));
   study
       ->add_option("--search", space.search,
                    "Also look for a free motion among so many guesses, knowing all: a further "
@@ -243,8 +264,9 @@ void AddStudyCommand(CommandLine& line) {
   study->add_flag("--resume", options->resume,
                   "Go on with a study that was interrupted, or that is to have more episodes: "
                   "what its folder holds is not run again");
-  study->add_option("--out", options->out, "Folder for the results [out/study]");
+  study->add_option("--out", options->out, "Folder for the results [out/study/SCENARIO]");
   study->callback([&line, options] {
+    options->command = line.text;
     if (options->jobs == 0) options->jobs = std::min(bench::NumProcessors(), kMaxJobs);
     line.exit_code = Study(*options, FindDataPaths()).Run();
   });

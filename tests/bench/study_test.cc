@@ -10,6 +10,7 @@
 
 #include "sidestep/bench/free_path_search.h"
 #include "sidestep/bench/resolve.h"
+#include "sidestep/bench/study_page.h"
 
 namespace sidestep::bench {
 namespace {
@@ -38,7 +39,7 @@ TEST(OutcomeTable, CountsGoalsAndSaysHowTheOthersEnded) {
       Row("stop", "kalman_cv", "goal"),      Row("circle", "two_frame", "failed"),
       Row("circle", "kalman_cv", "timeout"),
   };
-  EXPECT_EQ(OutcomeTable(rows, "behaviour", "predictor"),
+  EXPECT_EQ(OutcomeTable(rows, {"behaviour", "predictor"}),
             "| behaviour | two_frame | kalman_cv |\n"
             "|---|---|---|\n"
             "| stop | 1/2 | 1/1 |\n"
@@ -51,9 +52,9 @@ TEST(OutcomeTable, CountsGoalsAndSaysHowTheOthersEnded) {
 
 TEST(OutcomeTable, NeedsNoAxes) {
   const std::vector<StudyRow> rows = {Row("stop", "imm", "goal"), Row("turn", "imm", "timeout")};
-  EXPECT_EQ(OutcomeTable(rows, "", ""),
+  EXPECT_EQ(OutcomeTable(rows, {"", ""}),
             "|  | episodes |\n|---|---|\n| all | 1/2 |\n| timeout | 1 |\n");
-  EXPECT_EQ(OutcomeTable(rows, "behaviour", ""),
+  EXPECT_EQ(OutcomeTable(rows, {"behaviour", ""}),
             "| behaviour | episodes |\n|---|---|\n| stop | 1/1 |\n| turn | 0/1 |\n"
             "| all | 1/2 |\n| timeout | 1 |\n");
 }

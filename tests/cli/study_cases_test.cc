@@ -44,7 +44,7 @@ TEST(ChooseAxes, TakesWhatVaries) {
       {{{"behaviour", 3}, {"seed", 9}}, "", "seed", "behaviour", "seed"},
   };
   for (const Choice& choice : choices) {
-    const TableAxes axes = ChooseAxes(Of(choice.factors), {choice.asked_down, choice.asked_across});
+    const bench::TableAxes axes = ChooseAxes(Of(choice.factors), {choice.asked_down, choice.asked_across});
     EXPECT_EQ(axes.down, choice.down);
     EXPECT_EQ(axes.across, choice.across);
   }

@@ -1,0 +1,116 @@
+#include "sidestep/bench/study_page.h"
+
+#include <algorithm>
+#include <map>
+
+#include "sidestep/core/joined.h"
+
+namespace sidestep::bench {
+namespace {
+
+constexpr const char* kSeed = "seed";
+constexpr std::size_t kMostValues = 12;  // of a factor that are listed
+
+// Text as it is to be read, in a cell of a table too: names may hold anything.
+std::string Plain(const std::string& text) {
+  std::string plain;
+  for (const char c : text) {
+    const bool is_control = static_cast<unsigned char>(c) < 32;
+    if (c == '|') plain += '\\';
+    plain += is_control ? ' ' : c;
+  }
+  return plain;
+}
+
+// A row's value of a factor; without a name, all rows are alike.
+std::string ValueOf(const StudyRow& row, const std::string& factor) {
+  return factor.empty() ? "episodes" : row.factors.at(factor);
+}
+
+std::vector<std::string> ValuesOf(const std::vector<StudyRow>& rows, const std::string& factor) {
+  std::vector<std::string> values;
+  for (const StudyRow& row : rows) {
+    const std::string value = ValueOf(row, factor);
+    if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
+  }
+  return values;
+}
+
+struct Tally {
+  int goal = 0, episodes = 0;
+
+  void Count(const StudyRow& row) {
+    ++episodes;
+    goal += row.outcome == ToString(Outcome::kGoal) ? 1 : 0;
+  }
+  std::string Text() const { return std::to_string(goal) + "/" + std::to_string(episodes); }
+};
+
+// `a, b, c`; of many, those at the ends.
+std::string Listed(std::vector<std::string> values) {
+  const std::string count = std::to_string(values.size());
+  if (values.size() <= kMostValues) return Joined(values);
+  return values[0] + ", " + values[1] + ", ..., " + values.back() + " (" + count + ")";
+}
+
+// A line for each factor that varies, and one for those that do not.
+std::string FactorLines(const std::vector<StudyRow>& rows) {
+  std::string varied, fixed;
+  for (const auto& entry : rows.front().factors) {
+    const std::string& factor = entry.first;
+    const std::vector<std::string> values = ValuesOf(rows, factor);
+    if (values.size() > 1) {
+      varied += "- " + std::string(factor == kSeed ? "episodes of each: seeds" : "varied: ") +
+                (factor == kSeed ? "" : Plain(factor) + ":") + " " + Plain(Listed(values)) + "\n";
+    } else {
+      fixed += "- fixed: " + Plain(factor) + " = " + Plain(values.front()) + "\n";
+    }
+  }
+  return varied + fixed;
+}
+
+}  // namespace
+
+std::string OutcomeTable(const std::vector<StudyRow>& rows, const TableAxes& axes) {
+  const auto& [down, across] = axes;
+  const std::vector<std::string> columns = ValuesOf(rows, across);
+  const std::vector<std::string> lines =
+      down.empty() ? std::vector<std::string>() : ValuesOf(rows, down);
+  std::map<std::string, std::map<std::string, Tally>> cells;
+  std::map<std::string, Tally> totals;
+  std::map<std::string, std::map<std::string, int>> endings;
+  for (const StudyRow& row : rows) {
+    const std::string column = ValueOf(row, across);
+    cells[ValueOf(row, down)][column].Count(row);
+    totals[column].Count(row);
+    ++endings[row.outcome][column];
+  }
+  std::string text = "| " + Plain(down) + " |";
+  for (const std::string& column : columns) text += " " + Plain(column) + " |";
+  text += "\n|---|";
+  for (std::size_t i = 0; i < columns.size(); ++i) text += "---|";
+  for (const std::string& line : lines) {
+    text += "\n| " + Plain(line) + " |";
+    for (const std::string& column : columns) text += " " + cells[line][column].Text() + " |";
+  }
+  text += "\n| all |";
+  for (const std::string& column : columns) text += " " + totals[column].Text() + " |";
+  for (auto& [outcome, counts] : endings) {
+    if (outcome == ToString(Outcome::kGoal)) continue;
+    text += "\n| " + outcome + " |";
+    for (const std::string& column : columns) text += " " + std::to_string(counts[column]) + " |";
+  }
+  return text + "\n";
+}
+
+std::string StudyPage(const StudySubject& subject, const std::vector<StudyRow>& rows,
+                      const TableAxes& axes) {
+  return "# Study of " + Plain(subject.scenario) + "\n\n" + Plain(subject.description) + "\n\n" +
+         FactorLines(rows) + "- " + std::to_string(rows.size()) + " episodes, made by\n\n      " +
+         subject.command +
+         "\n\nHow many reached the goal and touched nothing, of how many, and how the others "
+         "ended:\n\n" +
+         OutcomeTable(rows, axes);
+}
+
+}  // namespace sidestep::bench
