@@ -8,7 +8,6 @@
 namespace sidestep::bench {
 namespace {
 
-constexpr const char* kSeed = "seed";
 constexpr std::size_t kMostValues = 12;  // of a factor that are listed
 
 // Text as it is to be read, in a cell of a table too: names may hold anything.
@@ -60,8 +59,7 @@ std::string FactorLines(const std::vector<StudyRow>& rows) {
     const std::string& factor = entry.first;
     const std::vector<std::string> values = ValuesOf(rows, factor);
     if (values.size() > 1) {
-      varied += "- " + std::string(factor == kSeed ? "episodes of each: seeds" : "varied: ") +
-                (factor == kSeed ? "" : Plain(factor) + ":") + " " + Plain(Listed(values)) + "\n";
+      varied += "- varied: " + Plain(factor) + " = " + Plain(Listed(values)) + "\n";
     } else {
       fixed += "- fixed: " + Plain(factor) + " = " + Plain(values.front()) + "\n";
     }

@@ -15,6 +15,7 @@
 #include "sidestep/cli/heat_slice.h"
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/out_folder.h"
+#include "sidestep/cli/scenario_options.h"
 #include "sidestep/cli/wiring.h"
 #include "sidestep/core/atomic_file.h"
 #include "sidestep/render/font.h"
@@ -26,9 +27,7 @@ namespace sidestep::cli {
 namespace {
 
 struct AuditOptions {
-  std::string scenario;
-  Overrides overrides;
-  std::vector<std::string> settings;
+  ScenarioOptions scenario;
   std::vector<double> ahead_s = {0, 0.5, 1, 2};
   int num_points = 20000;
   std::string out;
@@ -99,10 +98,10 @@ std::string Json(const std::vector<bench::AuditRow>& rows, const bench::AuditPla
   return bench::JsonText(json);
 }
 
-int Audit(AuditOptions options) {
-  options.overrides.settings = ParseSettings(options.settings);
+int Audit(const AuditOptions& options) {
   const DataPaths paths = FindDataPaths();
-  const Problem problem = LoadProblem(options.scenario, options.overrides, paths);
+  const Problem problem =
+      LoadProblem(options.scenario.scenario, ParseOverrides(options.scenario), paths);
   const std::string out = MakeOutFolder(
       options.out.empty() ? "out/" + problem.scenario.name + "/audit" : options.out,
       {"slice.png", "field.nrrd", "truth.nrrd", "difference.nrrd", "occupancy.nrrd", "audit.json"});
@@ -164,17 +163,7 @@ void AddAuditCommand(CommandLine& line) {
   auto options = std::make_shared<AuditOptions>();
   CLI::App* const audit = line.app.add_subcommand(
       "audit", "Run one episode; compare the fields that the planner saw with the true geometry");
-  Overrides& overrides = options->overrides;
-  audit->add_option("SCENARIO", options->scenario, "A name (see `sidestep list`) or a path")
-      ->required();
-  audit->add_option("--knowledge", overrides.knowledge, "What the planner is told, as for `run`");
-  audit->add_option("--predictor", overrides.predictor, "How objects are extrapolated");
-  audit->add_option("--speed", overrides.speed_m_s, "Speed of every moving obstacle [m/s]")
-      ->check(NumberFrom(0.0, 100.0));
-  audit->add_option("--seed", overrides.seed, "Seed of everything random")
-      ->check(NumberFrom(0, 2147483647));
-  audit->add_option("--set", options->settings, "KEY=VALUE, as for `sidestep run`")
-      ->allow_extra_args(false);
+  AddScenarioOptions(*audit, options->scenario);
   audit
       ->add_option("--ahead", options->ahead_s,
                    "Times after each cycle that the field is asked about [s]")

@@ -12,6 +12,7 @@
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/number_range.h"
+#include "sidestep/cli/scenario_options.h"
 #include "sidestep/cli/slice_axes.h"
 #include "sidestep/cli/wiring.h"
 #include "sidestep/core/atomic_file.h"
@@ -25,10 +26,12 @@
 namespace sidestep::cli {
 namespace {
 
+constexpr render::Color kInk{20, 20, 30};
+constexpr int kLetters = 14, kLeft = 48;  // pixels
+
 struct FieldOptions {
-  std::string scenario, out;
-  Overrides overrides;
-  std::vector<std::string> settings;
+  ScenarioOptions scenario;
+  std::string out;
   double time_s = 0.5, height_m = 0.6, reach_m = 0.5;
   std::vector<double> ahead_s = {0};
 };
@@ -103,9 +106,7 @@ render::Image Slice(const Belief& belief, const GridSpec& grid, EpisodeTime t, d
 
 // What the colours mean: a bar from solid to far with its ends in metres.
 void DrawScale(render::Image& image, int y, double reach_m, const render::Font& font) {
-  constexpr render::Color kInk{20, 20, 30};
-  constexpr int kLetters = 14, kHeight = 12, kLength = 160;
-  constexpr double kLeft = 48;
+  constexpr int kHeight = 12, kLength = 160;
   double x = font.Draw(image, kLeft, y, kLetters, kInk, "solid ");
   image.Fill({static_cast<int>(x), y + 1, 2 * kHeight, kHeight}, ColorOf(-1, reach_m));
   x = font.Draw(image, x + 2 * kHeight + 12, y, kLetters, kInk, "0 ");
@@ -117,32 +118,49 @@ void DrawScale(render::Image& image, int y, double reach_m, const render::Font& 
   font.Draw(image, x + kLength, y, kLetters, kInk, fmt::format(" {:g} m or more", reach_m));
 }
 
-int DrawField(FieldOptions options) {
+void CheckHeight(double height_m, const GridSpec& grid) {
+  const double low_m = grid.first_center_m.z() - grid.cell_m / 2;
+  const double high_m = low_m + grid.cell_m * grid.size[2];
+  if (height_m >= low_m && height_m <= high_m) return;
+  throw InputError("--height",
+                   fmt::format("must be within the workspace, from {:g} to {:g} m, is {:g}", low_m,
+                               high_m, height_m));
+}
+
+// Whose belief the picture shows.
+std::string TitleOf(const scenarios::Scenario& scenario, double time_s) {
+  const bool predicts = scenario.knowledge == ToString(sdf::Knowledge::kPrediction);
+  return fmt::format("{}: what {}{} believes, having seen {:g} s", scenario.name,
+                     scenario.knowledge, predicts ? " (" + scenario.predictor + ")" : "", time_s);
+}
+
+int DrawField(const FieldOptions& options) {
   render::CheckPngName(options.out);
   CheckCanWrite(options.out);
-  options.overrides.settings = ParseSettings(options.settings);
-  const Scene scene = LoadScene(options.scenario, options.overrides, FindDataPaths());
+  const Scene scene =
+      LoadScene(options.scenario.scenario, ParseOverrides(options.scenario), FindDataPaths());
   const GridSpec& grid = scene.scenario.grid;
+  CheckHeight(options.height_m, grid);
   const Belief belief = Watch(scene, options);
-  const Eigen::Vector3d low = grid.first_center_m.array() - grid.cell_m / 2;
-  const SliceExtent extent = {low.x(), low.x() + grid.cell_m * grid.size[0], low.y(),
-                              low.y() + grid.cell_m * grid.size[1]};
   const render::GlContext gl;  // has the letters
   const render::Font font(gl);
   std::vector<render::Image> slices;
   for (const double ahead_s : options.ahead_s) {
     const EpisodeTime t = belief.t + HorizonOffset(ahead_s);
     const std::string title = fmt::format("{:g} s, z = {:g} m", t.seconds(), options.height_m);
-    slices.push_back(WithAxes(Slice(belief, grid, t, options.height_m), extent, title, font));
+    slices.push_back(
+        WithAxes(Slice(belief, grid, t, options.height_m), ExtentOf(grid), title, font));
   }
-  constexpr int kScale = 26;
+  constexpr int kScale = 26, kHead = 22;
   const int width = slices.front().width(), height = slices.front().height();
-  render::Image image(std::max(width * static_cast<int>(slices.size()), 400), height + kScale);
+  render::Image image(std::max(width * static_cast<int>(slices.size()), 400),
+                      kHead + height + kScale);
   image.Fill({0, 0, image.width(), image.height()}, {255, 255, 255});
+  font.Draw(image, kLeft, 4, kLetters, kInk, TitleOf(scene.scenario, options.time_s));
   for (std::size_t i = 0; i < slices.size(); ++i) {
-    image.Paste(slices[i], width * static_cast<int>(i), 0);
+    image.Paste(slices[i], width * static_cast<int>(i), kHead);
   }
-  DrawScale(image, height + 4, options.reach_m, font);
+  DrawScale(image, kHead + height + 4, options.reach_m, font);
   render::WritePng(image, options.out);
   Print("written  {}\n", options.out);
   return 0;
@@ -154,8 +172,7 @@ void AddFieldCommand(CommandLine& line) {
   auto options = std::make_shared<FieldOptions>();
   CLI::App* const field = line.app.add_subcommand(
       "field", "Draw a level slice of the distances that a planner would believe in");
-  field->add_option("SCENARIO", options->scenario, "A name (see `sidestep list`) or a path")
-      ->required();
+  AddScenarioOptions(*field, options->scenario);
   field->add_option("--out", options->out, "The picture to write, FILE.png")->required();
   field->add_option("--time", options->time_s, "When the world was last seen [s] [0.5]")
       ->check(NumberFrom(0.0, 60.0));
@@ -164,14 +181,10 @@ void AddFieldCommand(CommandLine& line) {
                    "For how long after that [s], one slice each, side by side [0]")
       ->delimiter(',')
       ->check(NumberFrom(0.0, 60.0));
-  field->add_option("--height", options->height_m, "Of the slice, in the world [m] [0.6]")
-      ->check(NumberFrom(-100.0, 100.0));
+  field->add_option("--height", options->height_m, "Of the slice, within the workspace [m] [0.6]")
+      ->check(NumberFrom(-1e12, 1e12));
   field->add_option("--reach", options->reach_m, "Greater distances look alike [m] [0.5]")
       ->check(NumberFrom(0.01, 10.0));
-  field->add_option("--knowledge", options->overrides.knowledge, "What the planner is told");
-  field->add_option("--predictor", options->overrides.predictor, "How objects are extrapolated");
-  field->add_option("--set", options->settings, "KEY=VALUE, as for `sidestep run`")
-      ->allow_extra_args(false);
   field->footer(
       "Solids are dark red, what is near them orange, what is far pale; a line for each 0.1 m. "
       "Black\n"

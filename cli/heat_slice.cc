@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "sidestep/cli/slice_axes.h"
 #include "sidestep/core/number_text.h"
 
 namespace sidestep::cli {
@@ -111,8 +112,9 @@ render::Image DrawHeatSlice(const bench::AuditGrids& grids, const Eigen::Vector3
   const auto [pi, pj, pk] = grid.CellOf(p_W);
   const Layer layer(grids, std::clamp(pk, 0, nz - 1));
   const int pixels = std::clamp(576 / std::max(nx, ny), 1, 24);
-  render::Image slice = DrawLayer(layer, pixels);
-  slice.Outline({(pi - 1) * pixels, (ny - 2 - pj) * pixels, 3 * pixels, 3 * pixels}, kPlace, 2);
+  render::Image cells = DrawLayer(layer, pixels);
+  cells.Outline({(pi - 1) * pixels, (ny - 2 - pj) * pixels, 3 * pixels, 3 * pixels}, kPlace, 2);
+  const render::Image slice = WithAxes(cells, ExtentOf(grid), "", font);
 
   const int head = kInset + kLine * static_cast<int>(title.size()) + kInset / 2;
   const int foot = kInset + 2 * kLine + kInset;

@@ -10,6 +10,7 @@
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/provenance.h"
+#include "sidestep/cli/scenario_options.h"
 #include "sidestep/cli/versions.h"
 #include "sidestep/cli/wiring.h"
 #include "sidestep/core/atomic_file.h"
@@ -20,9 +21,7 @@ namespace sidestep::cli {
 namespace {
 
 struct RunOptions {
-  std::string scenario;
-  Overrides overrides;
-  std::vector<std::string> settings;  // KEY=VALUE
+  ScenarioOptions scenario;
   std::string out;
   bool json = false;
 };
@@ -37,9 +36,10 @@ void PrintSummary(const bench::EpisodeResult& result, double dwell_s, const std:
   Print("first contact    {}\n", number("first_contact_s", 1, "{:.3f} s"));
   Print("least clearance  {}\n", number("min_clearance_m", 1e3, "{:.1f} mm"));
   Print("time to goal     {}\n", number("time_to_goal_s", 1, "{:.3f} s"));
-  if (dwell_s > 0)
-    Print("stayed for {:<5} {}\n", fmt::format("{:g} s", dwell_s),
-          number("time_to_dwell_s", 1, "until {:.3f} s"));
+  if (dwell_s > 0) {
+    Print("dwell of {:<7}  {}\n", fmt::format("{:g} s", dwell_s),
+          number("time_to_dwell_s", 1, "over at {:.3f} s"));
+  }
   Print("GP cost          {}\n", number("gp_cost", 1, "{:.2f}"));
   Print("jerk RMS         {}\n", number("jerk_rms", 1, "{:.1f} rad/s^3"));
   if (metrics.at("samples_outside_grid") > 0) {
@@ -58,9 +58,8 @@ void PrintSummary(const bench::EpisodeResult& result, double dwell_s, const std:
 
 int Run(const RunOptions& options) {
   const DataPaths paths = FindDataPaths();
-  Overrides overrides = options.overrides;
-  overrides.settings = ParseSettings(options.settings);
-  const Problem problem = LoadProblem(options.scenario, overrides, paths);
+  const Problem problem =
+      LoadProblem(options.scenario.scenario, ParseOverrides(options.scenario), paths);
   const std::string out = MakeOutFolder(
       options.out.empty() ? "out/" + problem.scenario.name + "/" + problem.scenario.knowledge
                           : options.out,
@@ -87,22 +86,8 @@ void AddRunCommand(CommandLine& line) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* const run = line.app.add_subcommand(
       "run", "Run one closed-loop episode headless; write result.json and trace.h5");
-  Overrides& overrides = options->overrides;
-  run->add_option("SCENARIO", options->scenario, "A name (see `sidestep list`) or a path")
-      ->required();
-  run->add_option(
-         "--set", options->settings,
-         "KEY=VALUE: one of the scenario's choices (pair=3), or any key of its file by its "
-         "path (planner.qc=2); may be repeated")
-      ->allow_extra_args(false);
-  run->add_option("--knowledge", overrides.knowledge,
-                  "What the planner is told: static, execute_and_update, prediction, "
-                  "full_knowledge");
-  run->add_option("--predictor", overrides.predictor, "How objects are extrapolated");
-  run->add_option("--speed", overrides.speed_m_s, "Speed of every moving obstacle [m/s]")
-      ->check(NumberFrom(0.0, 100.0));
-  run->add_option("--seed", overrides.seed, "Seed of everything random")
-      ->check(NumberFrom(0, 2147483647));
+  AddScenarioOptions(*run, options->scenario);
+  Overrides& overrides = options->scenario.overrides;
   run->add_option("--latency-ms", overrides.latency_ms,
                   "Episode time charged to each planning cycle [ms]")
       ->check(NumberFrom(0.0, 60000.0));

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "sidestep/core/grid.h"
 #include "sidestep/render/font.h"
 #include "sidestep/render/image.h"
 
@@ -12,7 +13,11 @@ struct SliceExtent {
   double x_low_m = 0, x_high_m = 0, y_low_m = 0, y_high_m = 0;
 };
 
-/// The picture, x to the right and y upwards, in a frame with ticks in metres, and a title above.
+/// Of all cells of a grid.
+SliceExtent ExtentOf(const GridSpec& grid);
+
+/// The picture, x to the right and y upwards, in a frame with ticks in metres, and a title above
+/// unless it is empty.
 render::Image WithAxes(const render::Image& slice, const SliceExtent& extent,
                        const std::string& title, const render::Font& font);
 

@@ -119,7 +119,7 @@ class Study {
   void CheckResumed(const bench::StudyLog& log) const {
     const auto fail = [&](const std::string& what) {
       throw InputError(out_ + "/study.jsonl",
-                       what + ": choose another folder by --out, or remove this one");
+                       what + "choose another folder by --out, or remove this one");
     };
     const std::set<bench::Factors> asked(cases_.begin(), cases_.end());
     for (const auto& [factors, row] : log.rows()) {
@@ -128,7 +128,7 @@ class Study {
       for (const auto& [factor, value] : factors) {
         episode += (episode.empty() ? "" : ", ") + factor + " " + value;
       }
-      fail("holds an episode that is not asked for (" + episode + "); ask for it too");
+      fail("holds an episode that is not asked for (" + episode + "): ask for it too, ");
     }
     ForAll([&](std::size_t i) {
       const bench::StudyRow* const row = log.Find(cases_[i]);
@@ -141,7 +141,7 @@ class Study {
       if (then.method != now.method) changed = "another --search";
       if (then.scenario != now.scenario) changed = "another scenario";
       if (changed == nullptr) return;
-      fail(std::string("holds rows of ") + changed);
+      fail(std::string("holds rows of ") + changed + ": ");
     });
   }
 

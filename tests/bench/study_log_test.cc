@@ -126,6 +126,17 @@ TEST_F(StudyLogTest, RefusesWhatIsNoLog) {
   EXPECT_THAT(MessageOfOpening(/*resume=*/true), HasSubstr("study.jsonl:2: is no row of a study"));
 }
 
+TEST_F(StudyLogTest, RefusesAnOutcomeThatIsNone) {
+  StudyRow row = Row("2");
+  row.outcome = "great";
+  {
+    StudyLog log(path_, /*resume=*/false);
+    log.Append(Row("1"));
+    log.Append(row);
+  }
+  EXPECT_EQ(MessageOfOpening(/*resume=*/true), path_ + ":3: outcome: no outcome is 'great'");
+}
+
 TEST_F(StudyLogTest, SaysWhereItCannotBeWritten) {
   EXPECT_THROW(StudyLog("/nowhere/study.jsonl", /*resume=*/false), InputError);
   EXPECT_THROW(StudyLog("/dev/full", /*resume=*/false), InputError);

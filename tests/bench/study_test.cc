@@ -59,6 +59,26 @@ TEST(OutcomeTable, NeedsNoAxes) {
             "| all | 1/2 |\n| timeout | 1 |\n");
 }
 
+TEST(OutcomeTable, HoldsNamesThatLookLikeMarkdown) {
+  const std::vector<StudyRow> rows = {Row("a|b\nc", "imm", "goal")};
+  EXPECT_EQ(OutcomeTable(rows, {"behaviour", "predictor"}),
+            "| behaviour | imm |\n|---|---|\n| a\\|b c | 1/1 |\n| all | 1/1 |\n");
+}
+
+TEST(StudyPage, SaysWhatIsVariedAndWhatIsNot) {
+  std::vector<StudyRow> rows;
+  for (int seed = 1; seed <= 30; ++seed) {
+    rows.push_back(Row("stop", "imm", "goal"));
+    rows.back().factors["seed"] = std::to_string(seed);
+  }
+  const std::string page = StudyPage({"hall", "A hall", "sidestep study hall"}, rows, {"", ""});
+  EXPECT_THAT(page, ::testing::StartsWith("# Study of hall\n\nA hall\n\n"
+                                          "- varied: seed = 1, 2, ..., 30 (30)\n"
+                                          "- fixed: behaviour = stop\n- fixed: predictor = imm\n"
+                                          "- 30 episodes, made by\n\n      sidestep study hall\n"));
+  EXPECT_THAT(page, HasSubstr("| all | 30/30 |\n"));
+}
+
 TEST(StudyCsv, HoldsWhatWasDrawnAndHowToRunItAgain) {
   std::vector<StudyRow> rows = {Row("stop", "imm", "goal"), Row("turn", "imm", "failed")};
   rows[0].drawn = {{"speed_factor", 0.1}};

@@ -89,5 +89,14 @@ TEST(Utf8Prefix, CutsNoCharacter) {
   EXPECT_EQ(Utf8Prefix("\xE9\xE9\xE9", 2), "\xE9\xE9");
 }
 
+TEST(EscapeControls, WritesOutWhatATerminalWouldObey) {
+  EXPECT_EQ(EscapeControls("a\x1b[31m\x07\x7f\0z"), "a\\x1B[31m\\x07\\x7F");
+  EXPECT_EQ(EscapeControls("\xC2\x9B"
+                           "1m \xC2\x80"),
+            "\\xC2\\x9B1m \\xC2\\x80");
+  EXPECT_EQ(EscapeControls("caf\xE9"), "caf\\xE9");
+  EXPECT_EQ(EscapeControls("line\n\tcaf\xC3\xA9\xC2\xA0\r"), "line\n\tcaf\xC3\xA9\xC2\xA0\r");
+}
+
 }  // namespace
 }  // namespace sidestep

@@ -107,10 +107,7 @@ TEST_P(CommandOnAScenario, RefusesASettingThatIsNotUtf8) {
 INSTANTIATE_TEST_SUITE_P(All, CommandOnAScenario,
                          ::testing::Values(Command{"Run", {"run"}, {}},
                                            Command{"Field", {"field"}, {}},
-                                           Command{"Study",
-                                                   {"study"},
-                                                   {"--knowledge", "static", "--down", "knowledge",
-                                                    "--across", "knowledge"}}),
+                                           Command{"Study", {"study"}, {"--knowledge", "static"}}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 TEST(Audit, RefusesLatin1Too) {
@@ -161,10 +158,9 @@ TEST(NameThatIsNotUtf8, LosesNothingAndIsWrittenOut) {
   ExpectOneLine(missing, (folder.path() / "\\xE9/result.json: no such file").native());
 
   const std::string study_out = folder.path() / "study";
-  const Finished study =
-      Sidestep(std::vector<std::string>{"study", file, "--knowledge", "static", "--down",
-                                        "knowledge", "--across", "knowledge", "--out", study_out} +
-               kQuick);
+  const Finished study = Sidestep(
+      std::vector<std::string>{"study", file, "--knowledge", "static", "--out", study_out} +
+      kQuick);
   EXPECT_EQ(study.exit_code, 0) << study.err;
 }
 
@@ -261,8 +257,7 @@ INSTANTIATE_TEST_SUITE_P(
                    {"reproduce", "closed_loop", "--out", "OUT"},
                    "execute_and_update.h5"},
         Unwritable{"Study",
-                   {"study", "hsr_walkway", "--knowledge", "static", "--down", "knowledge",
-                    "--across", "knowledge", "--out", "OUT"},
+                   {"study", "hsr_walkway", "--knowledge", "static", "--out", "OUT"},
                    "study.csv"}),
     [](const auto& test) { return std::string(test.param.name); });
 

@@ -101,6 +101,57 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"StudyOfKnowledgeTwice",
                 {"study", "hsr_walkway", "--set", "knowledge=static", "--knowledge", "prediction"},
                 {"--set knowledge: is what --knowledge varies"}},
+        Mistake{"StudyOfNoEpisodes",
+                {"study", "walkway_behaviours", "--episodes", "0"},
+                {"--episodes", "must be a number from 1 to 100000"}},
+        Mistake{"StudyOfOneFactorDownAndAcross",
+                {"study", "hsr_walkway", "--speed", "1,2", "--down", "speed_m_s", "--across",
+                 "speed_m_s"},
+                {"--across: 'speed_m_s' is listed down already"}},
+        Mistake{"StudyOfASpeedThatIsSet",
+                {"study", "hsr_walkway", "--speed", "1,2", "--set",
+                 "moving_obstacles[0].motion.linear.speed_m_s=3"},
+                {"--set moving_obstacles[0].motion.linear.speed_m_s: is given by --speed as well"}},
+        Mistake{"StudyOfAnotherSpelling",
+                {"study", "hsr_walkway", "--set", "planner..qc=1"},
+                {"--set planner..qc: is no path"}},
+        Mistake{"SeedTwice", {"run", "hsr_walkway", "--seed", "3", "--seed", "4"}, {"--seed"}},
+        Mistake{"SeedByFlagAndSetting",
+                {"run", "hsr_walkway", "--seed", "3", "--set", "seed=3"},
+                {"--set seed: is given by --seed as well"}},
+        Mistake{"KnowledgeByFlagAndSetting",
+                {"run", "hsr_walkway", "--knowledge", "static", "--set", "knowledge=static"},
+                {"--set knowledge: is given by --knowledge as well"}},
+        Mistake{"PredictorByFlagAndSetting",
+                {"field", "hsr_walkway", "--out", "x.png", "--predictor", "imm", "--set",
+                 "predictor=imm"},
+                {"--set predictor: is given by --predictor as well"}},
+        Mistake{"LatencyByFlagAndSettingOfAllOfIt",
+                {"run", "hsr_walkway", "--latency-ms", "30", "--set",
+                 "replanning={rate_hz: 10, latency_s: 0.1}"},
+                {"--set replanning: is given by --latency-ms as well"}},
+        Mistake{"EpsilonByFlagAndSetting",
+                {"run", "hsr_walkway", "--epsilon", "0.2", "--set", "planner.epsilon_m=0.1"},
+                {"--set planner.epsilon_m: is given by --epsilon as well"}},
+        Mistake{"SpeedByFlagAndSetting",
+                {"run", "hsr_walkway", "--speed", "1", "--set",
+                 "moving_obstacles[0].motion.linear.speed_m_s=1"},
+                {"--set moving_obstacles[0].motion.linear.speed_m_s: is given by --speed"}},
+        Mistake{"SettingOfAPartOfAnother",
+                {"run", "hsr_walkway", "--set", "task.dwell_s=1", "--set", "task={}"},
+                {"--set task.dwell_s: is given by --set task as well"}},
+        Mistake{"SettingOfAFloorAboveTheRobot",
+                {"run", "hsr_walkway", "--set", "floor_m=1"},
+                {"--set floor_m: task.start: the robot's sphere"}},
+        Mistake{"SettingOfABaseThatIsNowhere",
+                {"run", "hsr_walkway", "--set", "robot.base.position_m=[1e12, 0, 0]"},
+                {"--set robot.base.position_m: must be within 1000 km"}},
+        Mistake{"SettingOfASensorWithoutItsSettings",
+                {"run", "hsr_walkway", "--set", "sensor.name=tags"},
+                {"--set sensor.name: sensor.tags: is missing"}},
+        Mistake{"FieldAboveTheWorkspace",
+                {"field", "hsr_walkway", "--out", "x.png", "--height", "7"},
+                {"--height: must be within the workspace, from -1.02 to 2.82 m, is 7"}},
         Mistake{"LatencyBeyondHorizon",
                 {"run", "hsr_walkway", "--latency-ms", "4000"},
                 {"--latency-ms: must not exceed the horizon"}},
@@ -363,6 +414,128 @@ TEST(Study, MakesARowOfACombinationThatIsRefusedAndGoesOn) {
   EXPECT_THAT(csv, HasSubstr("failed,--speed: is above the max_speed_m_s of 'hsr'"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
   EXPECT_THAT(finished.out, HasSubstr("| speed_m_s | episodes |"));
+}
+
+TEST(Study, ThatIsToHaveLessThanItHasIsRefused) {
+  const TemporaryFolder folder;
+  const auto study = [&](const std::string& episodes, const std::string& flag) {
+    return QuickStudy(folder.path(), {"--set", "behaviour=stop", "--episodes", episodes, flag});
+  };
+  EXPECT_EQ(study("2", "--traces=none").exit_code, 0);
+  const std::string csv = TextOf(folder.path() / "study.csv");
+  const Finished fewer = study("1", "--resume");
+  EXPECT_EQ(fewer.exit_code, 2);
+  EXPECT_THAT(fewer.err,
+              AllOf(HasSubstr("study.jsonl: holds an episode that is not asked for"),
+                    HasSubstr("seed 2): ask for it too, choose another folder by --out")));
+  EXPECT_EQ(TextOf(folder.path() / "study.csv"), csv);
+}
+
+TEST(Study, SaysOnItsPageWhatItIsOf) {
+  const TemporaryFolder folder;
+  const Finished finished = QuickStudy(
+      folder.path(), {"--set", "behaviour=stop", "--knowledge", "static,prediction", "-j", "1"});
+  EXPECT_EQ(finished.exit_code, 0) << finished.err;
+  EXPECT_THAT(TextOf(folder.path() / "study.md"),
+              AllOf(StartsWith("# Study of walkway_behaviours\n"),
+                    HasSubstr("- varied: knowledge = static, prediction\n"),
+                    HasSubstr("- fixed: behaviour = stop\n"),
+                    HasSubstr("sidestep study walkway_behaviours --set"),
+                    HasSubstr("| knowledge | episodes |")));
+}
+
+TEST(Study, GoesIntoAFolderOfItsScenario) {
+  const TemporaryFolder folder;
+  const Finished finished =
+      RunProgram({SIDESTEP_PROGRAM, "study", "hsr_walkway", "--set", "planner.name=straight_line",
+                  "--set", "horizon.duration_s=1"},
+                 {}, folder.path().string());
+  EXPECT_EQ(finished.exit_code, 0) << finished.err;
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/study/hsr_walkway/study.csv"));
+}
+
+// A folder of data with these scenarios.
+class OwnScenarios : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    namespace fs = std::filesystem;
+    fs::create_directories(folder_.path() / "scenarios");
+    fs::create_directory_symlink(SIDESTEP_SOURCE_DIR "/models", folder_.path() / "models");
+  }
+  std::string Path(const std::string& name) const {
+    return folder_.path() / "scenarios" / (name + ".yaml");
+  }
+  void Write(const std::string& name, const std::string& old_text, const std::string& new_text) {
+    std::string text = TextOf(SIDESTEP_SOURCE_DIR "/scenarios/hsr_walkway.yaml");
+    text.replace(text.find(old_text), old_text.size(), new_text);
+    std::ofstream(Path(name)) << text;
+  }
+  Finished Run(const std::vector<std::string>& arguments) const {
+    return Sidestep(arguments, {"SIDESTEP_DATA_DIR=" + folder_.path().string()});
+  }
+
+  const TemporaryFolder folder_;
+};
+
+TEST_F(OwnScenarios, AreListedThoughOneIsWrong) {
+  Write("bad", "seed: ", "sed: ");
+  Write("good", "description: ", "description: Good: ");
+  Write("good", "description: ", "description: >\n  ");
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"list"},
+                                                    {"list", "scenarios"},
+                                                    {"list", "scenarios", "--names"}}) {
+    const Finished finished = Run(arguments);
+    EXPECT_EQ(finished.exit_code, 2);
+    EXPECT_THAT(finished.out, HasSubstr("good"));
+    EXPECT_THAT(finished.err, StartsWith(Path("bad") + ":"));
+    EXPECT_EQ(std::count(finished.err.begin(), finished.err.end(), '\n'), 1);
+  }
+  EXPECT_EQ(Run({"list", "robots"}).exit_code, 0);
+}
+
+TEST_F(OwnScenarios, ShowNoControlCharactersOnATerminal) {
+  Write("esc", "description: ", "name: \"a\\e[31mb\\x9b1m|c\"\ndescription: \"\\e]0;x\\a\" #");
+  const Finished list = Run({"list"});
+  EXPECT_THAT(list.out, HasSubstr("\\x1B]0;x\\x07"));
+  EXPECT_EQ(list.out.find('\x1b'), std::string::npos);
+  const std::string out = folder_.path() / "out";
+  const std::vector<std::string> quick = {
+      "--set", "planner.name=straight_line", "--set", "horizon.duration_s=1", "--out", out};
+  std::vector<std::string> run = {"run", "esc"};
+  run.insert(run.end(), quick.begin(), quick.end());
+  EXPECT_EQ(Run(run).exit_code, 0);
+  std::filesystem::create_directory(folder_.path() / "\x1b[31m");
+  std::filesystem::copy(out, folder_.path() / "\x1b[31m");
+  const Finished compare = Run({"compare", out, folder_.path() / "\x1b[31m"});
+  EXPECT_EQ(compare.exit_code, 0) << compare.err;
+  EXPECT_THAT(compare.out, HasSubstr("\\x1B[31m"));
+  EXPECT_EQ(compare.out.find('\x1b'), std::string::npos);
+}
+
+TEST(List, SaysWhatPlannersPredictorsAndSensorsDo) {
+  for (const std::string kind : {"planners", "predictors", "sensors"}) {
+    std::istringstream lines(Sidestep({"list", kind}).out);
+    std::istringstream names(Sidestep({"list", kind, "--names"}).out);
+    for (std::string line, name; std::getline(lines, line);) {
+      ASSERT_TRUE(std::getline(names, name));
+      EXPECT_THAT(line, StartsWith(name + " "));
+      EXPECT_GT(line.size(), 35u) << line;
+    }
+  }
+}
+
+TEST(Run, TellsWhatWasTouchedAndTheDwellThatWasAskedFor) {
+  const TemporaryFolder folder;
+  const auto run = [&](const std::string& dwell_s) {
+    return Sidestep({"run", "hsr_walkway", "--knowledge", "static", "--set",
+                     "task.dwell_s=" + dwell_s, "--out", folder.path()});
+  };
+  const Finished with = run("0.1");
+  EXPECT_THAT(with.out, AllOf(HasSubstr("outcome          collision with hsr\n"),
+                              HasSubstr("dwell of 0.1 s")));
+  EXPECT_EQ(nlohmann::json::parse(TextOf(folder.path() / "result.json")).at("touched"), "hsr");
+  EXPECT_THAT(Sidestep({"compare", folder.path()}).out, HasSubstr("collision with hsr"));
+  EXPECT_THAT(run("0").out, ::testing::Not(HasSubstr("dwell")));
 }
 
 TEST(Compare, TellsRunsApartByFolderAndByWhatDiffers) {
