@@ -335,8 +335,6 @@ YamlReader YamlReader::With(const std::string& path, const std::string& value,
   return WithValue(std::move(top));
 }
 
-YamlReader YamlReader::Unasked() const { return WithValue(node_->value); }
-
 YamlReader YamlReader::With(const YamlReader& part) const {
   auto top = std::make_shared<YamlValue>(*node_->value);
   for (const YamlValue& child : part.node_->value->children) {
@@ -346,6 +344,12 @@ YamlReader YamlReader::With(const YamlReader& part) const {
       top->children.push_back(child);
     }
   }
+  return WithValue(std::move(top));
+}
+
+YamlReader YamlReader::Without(const std::string& key) const {
+  auto top = std::make_shared<YamlValue>(*node_->value);
+  std::erase_if(top->children, [&](const YamlValue& child) { return child.key == key; });
   return WithValue(std::move(top));
 }
 
@@ -401,8 +405,16 @@ std::map<std::string, int> YamlReader::Lines() const {
   return lines;
 }
 
-void YamlReader::Fail(const std::string& key, const std::string& why) const {
-  node_->FailAt(node_->FindItem(key), key, why);
+void YamlReader::Fail(const std::string& key, const std::string& why,
+                      const std::string& against) const {
+  const YamlValue* const at = node_->FindItem(key);
+  const YamlValue* const other = against.empty() ? nullptr : node_->FindItem(against);
+  const bool is_set = at != nullptr && FindSet(*at, key);
+  const auto other_set = other == nullptr ? std::nullopt : FindSet(*other, node_->PathOf(against));
+  if (!is_set && other_set) {
+    throw InputError(other_set->by + " " + other_set->path, node_->PathOf(key) + ": " + why);
+  }
+  node_->FailAt(at, key, why);
 }
 
 }  // namespace sidestep

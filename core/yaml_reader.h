@@ -55,9 +55,6 @@ class YamlReader {
   /// A map {position_m: [x, y, z], rpy_rad: [r, p, y]}; rpy_rad may be left out.
   Pose GetPose(const std::string& key) const;
 
-  /// The same map, of which nothing has been asked for yet.
-  YamlReader Unasked() const;
-
   /// This map with `value`, in YAML, at a path such as `planner.epsilon_m` or
   /// `moving_obstacles[0].shape` (core/yaml_tree.h); where the path leads through maps and lists
   /// that exist, its last key may be new. What is then found wrong with it is reported as `BY PATH:
@@ -68,6 +65,9 @@ class YamlReader {
 
   /// This map with every key of `part`, of the same file, in place of its own.
   YamlReader With(const YamlReader& part) const;
+
+  /// This map without a key.
+  YamlReader Without(const std::string& key) const;
 
   /// True if the value of `key` is a scalar (and not a list or a map).
   bool IsScalar(const std::string& key) const;
@@ -88,7 +88,10 @@ class YamlReader {
 
   /// Throws the InputError for `key`, or for an item of its list by "key[3]", at its line (or at
   /// the map's own line if it is absent).
-  [[noreturn]] void Fail(const std::string& key, const std::string& why) const;
+  /// @param against the key of this map that it does not agree with: where only that was set, it is
+  ///   blamed, `BY AGAINST: KEY: WHY`.
+  [[noreturn]] void Fail(const std::string& key, const std::string& why,
+                         const std::string& against = "") const;
 
  private:
   struct Node;

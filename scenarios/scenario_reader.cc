@@ -203,7 +203,7 @@ AcceleratedMotion ReadAccelerated(const YamlReader& body) {
   motion.change_at_s = ReadOptional(body, "change_at_s", 0);
   motion.max_speed_m_s = ReadOptional(body, "max_speed_m_s", kNever);
   if (motion.max_speed_m_s < body.GetNonNegative("speed_m_s")) {
-    body.Fail("max_speed_m_s", "must not be below speed_m_s");
+    body.Fail("max_speed_m_s", "must not be below speed_m_s", "speed_m_s");
   }
   return motion;
 }
@@ -287,7 +287,7 @@ void ReadMotion(const YamlReader& parent, const std::optional<std::string>& fold
         any.stop_at_s = ReadOptional(body, "stop_at_s", kNever);
         any.begin_at_s = ReadOptional(body, "begin_at_s", 0);
         if (any.stop_at_s < any.begin_at_s) {
-          body.Fail("stop_at_s", "must not be before begin_at_s");
+          body.Fail("stop_at_s", "must not be before begin_at_s", "begin_at_s");
         }
       },
       motion);
@@ -446,10 +446,11 @@ Choices ReadChoices(const YamlReader& file) {
   return choices;
 }
 
-// The file with one option of each choice in place: those that the settings name, else the default.
+// The file without its choices, one option of each in place: those that the settings name, else the
+// default.
 YamlReader Choose(const YamlReader& file, const Choices& choices, const Settings& settings,
                   std::map<std::string, std::string>& chosen) {
-  YamlReader top = file.Unasked();
+  YamlReader top = file.Without("choices");
   for (const auto& [name, choice] : choices) {
     const auto setting = settings.find(name);
     const std::string& option = setting == settings.end() ? choice.default_option : setting->second;
@@ -481,6 +482,15 @@ bool HasRobot(const YamlReader& top) {
   return std::any_of(keys.begin(), keys.end(), [&](const char* key) { return top.Has(key); });
 }
 
+// Results go into a folder of the scenario's name.
+std::string ReadFolderName(const YamlReader& top) {
+  const std::string name = top.GetString("name");
+  if (name == "." || name == ".." || name.find('/') != std::string::npos) {
+    top.Fail("name", "must be fit for a folder's name, without /, is '" + name + "'");
+  }
+  return name;
+}
+
 // Where a scenario was written.
 struct Origin {
   std::string file;
@@ -494,7 +504,7 @@ Scenario ReadSettled(const YamlReader& top, const Origin& origin) {
   scenario.lines = top.Lines();
   scenario.file = file;
   // A file's name may hold any bytes; that of a scenario is told in every kind of result.
-  scenario.name = top.Has("name") ? top.GetString("name")
+  scenario.name = top.Has("name") ? ReadFolderName(top)
                                   : EscapeInvalidUtf8(std::filesystem::path(file).stem().string());
   scenario.description = top.GetString("description");
   std::set<std::string> names = {"floor", "self", "world"};  // words of verdicts and of MJCF
@@ -518,7 +528,7 @@ Scenario ReadSettled(const YamlReader& top, const Origin& origin) {
   ReadPerception(top, scenario);
   SeedMotions(scenario);
   DrawVariations(top, scenario);
-  top.Has("choices");
+  top.Has("choices");  // known, though they have been taken out
   top.CheckNoUnknownKeys();
 
   const bool known = std::any_of(scenario.static_boxes.begin(), scenario.static_boxes.end(),

@@ -47,7 +47,7 @@ CameraSettings ReadCamera(const YamlReader& map) {
   camera.position_m = map.GetVector3("position_m");
   camera.look_at_m = map.GetVector3("look_at_m");
   if (!((camera.look_at_m - camera.position_m).norm() > 1e-6)) {
-    map.Fail("look_at_m", "must differ from position_m");
+    map.Fail("look_at_m", "must differ from position_m", "position_m");
   }
   camera.field_of_view_rad = PositiveAtMost(map, "field_of_view_rad", camera.field_of_view_rad, 3);
   camera.width = Pixels(map, "width", camera.width);

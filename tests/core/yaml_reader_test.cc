@@ -180,6 +180,17 @@ TEST(YamlReader, FailPointsAtTheKeyOrAtItsMap) {
   EXPECT_EQ(MessageOf([&]() { top.Fail("none", "is odd"); }, ""), "f.yaml:1: none: is odd");
 }
 
+TEST(YamlReader, FailBlamesWhatWasSetOfTwoThatDoNotAgree) {
+  const YamlReader top = YamlReader::FromText("m: {a: 1, b: 2}\n", "f.yaml");
+  const auto message = [](const YamlReader& reader) {
+    return MessageOf([&]() { reader.GetMap("m").Fail("a", "must be above b", "b"); }, "");
+  };
+  EXPECT_EQ(message(top), "f.yaml:1: m.a: must be above b");
+  EXPECT_EQ(message(top.With("m.b", "3", "--set")), "--set m.b: m.a: must be above b");
+  EXPECT_EQ(message(top.With("m.a", "3", "--set")), "--set m.a: must be above b");
+  EXPECT_EQ(message(top.With("m", "{a: 1, b: 3}", "--set")), "--set m.a: must be above b");
+}
+
 TEST(YamlReader, WithAValueChangesOnePlaceAndNoOther) {
   const YamlReader top = YamlReader::FromText("a: &x {n: 1, m: [2, 3]}\nb: *x\n", "f.yaml");
   const YamlReader changed = top.With("a.m[1]", "9", "--set").With("a.k", "new", "--set");
