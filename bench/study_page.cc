@@ -1,7 +1,7 @@
 #include "sidestep/bench/study_page.h"
 
-#include <algorithm>
 #include <map>
+#include <set>
 
 #include "sidestep/core/joined.h"
 
@@ -28,9 +28,10 @@ std::string ValueOf(const StudyRow& row, const std::string& factor) {
 
 std::vector<std::string> ValuesOf(const std::vector<StudyRow>& rows, const std::string& factor) {
   std::vector<std::string> values;
+  std::set<std::string> seen;
   for (const StudyRow& row : rows) {
     const std::string value = ValueOf(row, factor);
-    if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
+    if (seen.insert(value).second) values.push_back(value);
   }
   return values;
 }
@@ -46,7 +47,7 @@ struct Tally {
 };
 
 // `a, b, c`; of many, those at the ends.
-std::string Listed(std::vector<std::string> values) {
+std::string Listed(const std::vector<std::string>& values) {
   const std::string count = std::to_string(values.size());
   if (values.size() <= kMostValues) return Joined(values);
   return values[0] + ", " + values[1] + ", ..., " + values.back() + " (" + count + ")";

@@ -59,24 +59,30 @@ std::string ShortName(const std::string& key, const std::vector<std::string>& ke
   return key;
 }
 
-// Numbers, also those of a list, to four digits.
+// A number that is no whole one, to four digits.
+std::string RoundedNumber(const std::string& word) {
+  double number = 0;
+  const char* const end = word.data() + word.size();
+  const auto parsed = std::from_chars(word.data(), end, number);
+  const bool is_fraction = word.find_first_of(".e") != std::string::npos &&
+                           parsed.ec == std::errc() && parsed.ptr == end;
+  return is_fraction ? fmt::format("{:.4g}", number) : word;
+}
+
+// The same of each number of a list, [0.1,2].
 std::string Rounded(const std::string& value) {
-  const char* at = value.data();
-  const char* const end = at + value.size();
-  std::string rounded;
-  while (at != end) {
-    double number = 0;
-    const auto parsed = std::from_chars(at, end, number);
-    if (parsed.ec == std::errc()) {
-      rounded += fmt::format("{:.4g}", number);
-      at = parsed.ptr;
-    } else if (at != value.data() || *at == '[') {
-      rounded += *at++;
-    } else {
-      return value;  // a word
+  if (!value.starts_with('[')) return RoundedNumber(value);
+  std::string rounded, word;
+  for (const char c : value) {
+    const bool is_between = c == '[' || c == ',' || c == ']';
+    if (!is_between) {
+      word += c;
+      continue;
     }
+    rounded += RoundedNumber(word) + c;
+    word.clear();
   }
-  return rounded;
+  return rounded + word;
 }
 
 // The values of a parameter, one a result: with as few digits as tell them apart.

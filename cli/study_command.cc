@@ -248,7 +248,7 @@ void AddStudyCommand(CommandLine& line) {
       ->add_option("--search", space.search,
                    "Also look for a free motion among so many guesses, knowing all: a further "
                    "kind of knowledge, `search`")
-      ->check(NumberFrom(0, 100000));
+      ->check(NumberFrom(1, 100000));
   study->add_option("--down", options->axes.down,
                     "What the table lists down: a choice, speed_m_s, a key of --set, ... [what "
                     "varies]");

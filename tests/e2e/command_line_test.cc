@@ -541,7 +541,7 @@ TEST(Run, TellsWhatWasTouchedAndTheDwellThatWasAskedFor) {
 TEST(Compare, TellsRunsApartByFolderAndByWhatDiffers) {
   const TemporaryFolder folder;
   std::vector<std::string> compare = {"compare"};
-  for (const char* const epsilon : {"0.1", "0.15"}) {
+  for (const char* const epsilon : {"0.100001", "0.15123456"}) {
     compare.push_back((folder.path() / epsilon).string());
     const Finished run =
         Sidestep({"run", "hsr_walkway", "--set", "planner.name=straight_line", "--set",
@@ -550,8 +550,9 @@ TEST(Compare, TellsRunsApartByFolderAndByWhatDiffers) {
   }
   const Finished finished = Sidestep(compare);
   EXPECT_EQ(finished.exit_code, 0);
+  EXPECT_THAT(finished.out, HasSubstr("  outcome "));
   EXPECT_THAT(finished.out, AllOf(HasSubstr("epsilon_m"), HasSubstr(compare[1]),
-                                  HasSubstr("  0.15  "), ::testing::Not(HasSubstr("seed"))));
+                                  HasSubstr("  0.1512  "), ::testing::Not(HasSubstr("seed"))));
 }
 
 TEST(List, ShowsWhatCanBeNamed) {

@@ -87,9 +87,14 @@ TEST_P(HardScenario, EndsWithItsOutcomeReasonAndTrace) {
   } else {
     EXPECT_EQ(finished.err, "");
   }
-  EXPECT_THAT(finished.out, HasSubstr("outcome          " + expected_.outcome + "\n"));
 
   const auto result = nlohmann::json::parse(Slurp(out_ / "result.json"));
+  std::string told = expected_.outcome;
+  if (!result["touched"].is_null()) {
+    told += (is_aborted_ ? ", touched " : " with ") + result["touched"].get<std::string>();
+  }
+  EXPECT_EQ(result["touched"].is_null(), result["first_contact_s"].is_null());
+  EXPECT_THAT(finished.out, HasSubstr("outcome          " + told + "\n"));
   const record::Recording recording = record::ReadRecording(out_ / "trace.h5");
   EXPECT_EQ(result["outcome"], expected_.outcome);
   EXPECT_EQ(recording.header.at("outcome"), expected_.outcome);
