@@ -44,7 +44,8 @@ TEST(ChooseAxes, TakesWhatVaries) {
       {{{"behaviour", 3}, {"seed", 9}}, "", "seed", "behaviour", "seed"},
   };
   for (const Choice& choice : choices) {
-    const bench::TableAxes axes = ChooseAxes(Of(choice.factors), {choice.asked_down, choice.asked_across});
+    const bench::TableAxes axes =
+        ChooseAxes(Of(choice.factors), {choice.asked_down, choice.asked_across});
     EXPECT_EQ(axes.down, choice.down);
     EXPECT_EQ(axes.across, choice.across);
   }
@@ -52,6 +53,7 @@ TEST(ChooseAxes, TakesWhatVaries) {
 
 TEST(ChooseAxes, RefusesWhatIsNoFactor) {
   EXPECT_THROW(ChooseAxes(Of({{"speed_m_s", 2}}), {"pace", ""}), InputError);
+  EXPECT_THROW(ChooseAxes(Of({{"speed_m_s", 2}}), {"speed_m_s", "speed_m_s"}), InputError);
 }
 
 TEST(RunCommandOf, NamesEveryFactor) {
