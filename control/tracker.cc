@@ -5,8 +5,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "sidestep/control/joint_motion.h"
-
 namespace sidestep::control {
 namespace {
 
@@ -18,10 +16,6 @@ constexpr double kBandwidth_rad_s = 100;
 // The share of the acceleration and jerk limits that the approach to a far target plans with. The
 // rest is for the corrections on the way.
 constexpr double kApproachShare = 0.5;
-
-JointBounds BoundsOf(const TrackerLimits& limits, Eigen::Index j) {
-  return {limits.q_min(j), limits.q_max(j), limits.v_max(j), limits.a_max(j), limits.jerk_max(j)};
-}
 
 // The speed from which a joint without acceleration can stop within `distance`: the inverse of
 //   distance = v sqrt(v / J)                  if v <= A^2 / J (the limit A is not reached)
@@ -66,10 +60,12 @@ double WantedAcceleration(const JointMotion& motion, const JointMotion& target, 
 
 // Where the target is one tick before `point`, in the tracker's own terms: its velocity is the
 // backward difference of its positions. Exact while its acceleration is constant.
-JointMotion OneTickBefore(const TrajectoryPoint& point, Eigen::Index j, double h) {
-  const double v = point.v(j) - h / 2 * point.a(j);  // at `point`
-  return {point.q(j) - h * v, v - h * point.a(j), point.a(j)};
+JointMotion OneTickBefore(const JointMotion& point, double h) {
+  const double v = point.v - h / 2 * point.a;  // at `point`
+  return {point.q - h * v, v - h * point.a, point.a};
 }
+
+JointMotion OfJoint(const JointPoint& point, int j) { return {point.q(j), point.v(j), point.a(j)}; }
 
 }  // namespace
 
@@ -92,88 +88,63 @@ TrackerLimits TrackerLimits::Of(const robot::RobotModel& robot, double v_scale, 
   return limits;
 }
 
-JerkLimitedTracker::JerkLimitedTracker(const TrackerLimits& limits, double period_s)
-    : limits_(limits), period_s_(period_s) {
-  if (!(period_s > 0) || !std::isfinite(period_s)) {
-    throw std::invalid_argument("JerkLimitedTracker: the period must be > 0");
-  }
-  const Eigen::Index n = limits.q_min.size();
+JerkLimitedTracker::JerkLimitedTracker(const TrackerLimits& limits)
+    : num_joints_(static_cast<int>(limits.q_min.size())) {
   for (const Eigen::VectorXd* values :
        {&limits.q_max, &limits.v_max, &limits.a_max, &limits.jerk_max}) {
-    if (values->size() != n) {
+    if (values->size() != num_joints_) {
       throw std::invalid_argument("JerkLimitedTracker: limits must all have one length");
     }
   }
-  for (Eigen::Index j = 0; j < n; ++j) {
-    if (!(limits.q_min(j) < limits.q_max(j)) || !(limits.v_max(j) > 0) || !(limits.a_max(j) > 0) ||
-        !(limits.jerk_max(j) > 0) || !std::isfinite(limits.v_max(j))) {
+  if (num_joints_ > kMaxJoints) {
+    throw std::invalid_argument("JerkLimitedTracker: at most " + std::to_string(kMaxJoints) +
+                                " joints");
+  }
+  for (int j = 0; j < num_joints_; ++j) {
+    JointBounds& bounds = bounds_[j];
+    bounds = {limits.q_min(j), limits.q_max(j), limits.v_max(j), limits.a_max(j),
+              limits.jerk_max(j)};
+    if (!(bounds.q_min < bounds.q_max) || !(bounds.v_max > 0) || !(bounds.a_max > 0) ||
+        !(bounds.jerk_max > 0) || !std::isfinite(bounds.v_max)) {
       throw std::invalid_argument(
           "JerkLimitedTracker: q_min < q_max, other limits > 0, v_max finite");
     }
     // An unlimited joint gets the limits of its own feedback: a stop quicker than that would leave
     // an acceleration that the feedback takes back too slowly, and bounce.
     constexpr double w = kBandwidth_rad_s;
-    if (std::isinf(limits.a_max(j))) limits_.a_max(j) = w * limits.v_max(j);
-    if (std::isinf(limits.jerk_max(j))) limits_.jerk_max(j) = 3 * w * limits_.a_max(j);
+    if (std::isinf(bounds.a_max)) bounds.a_max = w * bounds.v_max;
+    if (std::isinf(bounds.jerk_max)) bounds.jerk_max = 3 * w * bounds.a_max;
   }
 }
 
-void JerkLimitedTracker::Reset(const Eigen::VectorXd& q) {
-  Reset(q, Eigen::VectorXd::Zero(q.size()), Eigen::VectorXd::Zero(q.size()));
-}
-
-void JerkLimitedTracker::Reset(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
-                               const Eigen::VectorXd& a) {
-  for (const Eigen::VectorXd* values : {&q, &v, &a}) CheckShape(*values);
-  q_ = q;
-  v_ = v;
-  a_ = a;
-}
-
-TrackerCommand JerkLimitedTracker::Step(const TrajectoryPoint& target) {
-  CheckStarted();
-  for (const Eigen::VectorXd* values : {&target.q, &target.v, &target.a}) CheckShape(*values);
-  const Gains gains = PlaceTriplePole(period_s_);
-  Eigen::VectorXd a_next(q_.size());
-  for (Eigen::Index j = 0; j < q_.size(); ++j) {
-    const JointBounds bounds = BoundsOf(limits_, j);
-    const JointMotion motion{q_(j), v_(j), a_(j)};
-    const double wanted =
-        WantedAcceleration(motion, OneTickBefore(target, j, period_s_), gains, bounds, period_s_);
-    a_next(j) = SafeAcceleration(motion, wanted, bounds, period_s_);
+template <class Acceleration>
+JointPoint JerkLimitedTracker::Advance(const JointPoint& state, double period_s,
+                                       const Acceleration& acceleration) const noexcept {
+  JointPoint next{JointVector(num_joints_), JointVector(num_joints_), JointVector(num_joints_)};
+  for (int j = 0; j < num_joints_; ++j) {
+    const JointMotion motion = OfJoint(state, j);
+    const JointMotion moved = motion.Next(acceleration(motion, j), period_s);
+    next.q(j) = moved.q;
+    next.v(j) = moved.v;
+    next.a(j) = moved.a;
   }
-  return Advance(a_next);
+  return next;
 }
 
-TrackerCommand JerkLimitedTracker::StepBrake() {
-  CheckStarted();
-  Eigen::VectorXd a_next(q_.size());
-  for (Eigen::Index j = 0; j < q_.size(); ++j) {
-    a_next(j) = BrakeAcceleration({q_(j), v_(j), a_(j)}, BoundsOf(limits_, j), period_s_);
-  }
-  return Advance(a_next);
+JointPoint JerkLimitedTracker::Step(const JointPoint& state, const JointPoint& target,
+                                    double period_s) const noexcept {
+  const Gains gains = PlaceTriplePole(period_s);
+  return Advance(state, period_s, [&](const JointMotion& motion, int j) {
+    const JointMotion aim = OneTickBefore(OfJoint(target, j), period_s);
+    const double wanted = WantedAcceleration(motion, aim, gains, bounds(j), period_s);
+    return SafeAcceleration(motion, wanted, bounds(j), period_s);
+  });
 }
 
-TrackerCommand JerkLimitedTracker::Advance(const Eigen::VectorXd& a_next) {
-  const Eigen::VectorXd jerk = (a_next - a_) / period_s_;
-  for (Eigen::Index j = 0; j < q_.size(); ++j) {
-    const JointMotion next = JointMotion{q_(j), v_(j), a_(j)}.Next(a_next(j), period_s_);
-    q_(j) = next.q;
-    v_(j) = next.v;
-    a_(j) = next.a;
-  }
-  return {q_, v_, a_, jerk};
-}
-
-void JerkLimitedTracker::CheckStarted() const {
-  if (q_.size() == 0) throw std::logic_error("JerkLimitedTracker: Reset() comes before a step");
-}
-
-void JerkLimitedTracker::CheckShape(const Eigen::VectorXd& values) const {
-  if (values.size() != limits_.q_min.size() || !values.allFinite()) {
-    throw std::invalid_argument("JerkLimitedTracker: must be " +
-                                std::to_string(limits_.q_min.size()) + " finite numbers");
-  }
+JointPoint JerkLimitedTracker::Brake(const JointPoint& state, double period_s) const noexcept {
+  return Advance(state, period_s, [&](const JointMotion& motion, int j) {
+    return BrakeAcceleration(motion, bounds(j), period_s);
+  });
 }
 
 }  // namespace sidestep::control

@@ -2,16 +2,11 @@
 
 #include <Eigen/Core>
 
-#include "sidestep/core/trajectory.h"
+#include "sidestep/control/joint_motion.h"
+#include "sidestep/control/joint_vector.h"
 #include "sidestep/robot/robot_model.h"
 
 namespace sidestep::control {
-
-/// What the motors are told in one tick. Shape n each: rad, rad/s, rad/s^2, rad/s^3. v, a and jerk
-/// are the backward differences of the commanded q, v and a over one tick.
-struct TrackerCommand {
-  Eigen::VectorXd q, v, a, jerk;
-};
 
 /// Bounds of the commanded motion, per joint. All but v_max may be infinite; the tracker then stays
 /// within 100/s v_max of acceleration and 300/s a_max of jerk.
@@ -24,44 +19,43 @@ struct TrackerLimits {
 };
 
 /// Turns a trajectory, whose acceleration jumps and which may be replaced at any time, into a
-/// command whose jerk, acceleration and velocity stay within limits at every tick. One small state
-/// (q, v, a) that a robot driver can re-seed; the same in simulation and on hardware. Joints are
-/// independent of one another.
+/// command whose jerk, acceleration and velocity stay within limits at every tick; the same in
+/// simulation and on hardware. It keeps no state: each tick starts from the motion that the robot
+/// says it was last told, so a lost command makes no jump. Joints are independent of one another.
+/// Nothing is allocated, and a tick takes a bounded time.
 ///
-/// The limits bind the sent samples: position, and its first, second and third backward difference,
-/// which is how a Panda's controller judges what it is sent.
+/// The limits bind the sent samples: position, and its first, second and third backward difference
+/// over one tick, which is how a Panda's controller judges what it is sent.
 class JerkLimitedTracker {
  public:
-  /// @param period_s the tick, e.g. 0.001. @throws std::invalid_argument for a period or a limit
-  /// <= 0, q_min >= q_max, an infinite v_max, or vectors of different lengths.
-  JerkLimitedTracker(const TrackerLimits& limits, double period_s);
+  /// @throws std::invalid_argument for more than kMaxJoints joints, a limit <= 0, q_min >= q_max,
+  /// an infinite v_max, or vectors of different lengths.
+  explicit JerkLimitedTracker(const TrackerLimits& limits);
 
-  /// Starts from rest at q (or from a moving state). A state from which no stop keeps to the limits
-  /// is accepted and braked; a joint at rest beyond its range may move towards it only.
-  /// @throws std::invalid_argument for a wrong shape or a value that is not finite.
-  void Reset(const Eigen::VectorXd& q);
-  void Reset(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const Eigen::VectorXd& a);
+  int num_joints() const { return num_joints_; }
+  /// Of joint j, without infinities but of position.
+  const JointBounds& bounds(int j) const { return bounds_[static_cast<std::size_t>(j)]; }
 
-  /// One tick towards `target`, the point at the time of the command that comes back. No sent
-  /// sample ever breaks a limit; what cannot be followed within them is followed late, without
-  /// overshooting a position limit. Small errors die out with a triple pole at 100 rad/s; the
+  /// The tick after `state`, towards `target`, which is the point at the time of the command that
+  /// comes back. From a state that was reached by this tracker no sent sample ever breaks a limit;
+  /// what cannot be followed within them is followed late, without overshooting a position limit.
+  /// Another state, from which no stop keeps to the limits, is braked; a joint at rest beyond its
+  /// range may move towards it only. Small errors die out with a triple pole at 100 rad/s; the
   /// target's velocity and acceleration are fed forward.
-  /// @throws std::invalid_argument for a wrong shape or a value that is not finite (and the state
-  /// stays as it was); std::logic_error before the first Reset.
-  TrackerCommand Step(const TrajectoryPoint& target);
+  /// @param state, target finite, of num_joints(). @param period_s the tick, > 0, e.g. 0.001.
+  JointPoint Step(const JointPoint& state, const JointPoint& target,
+                  double period_s) const noexcept;
 
-  /// One tick of the quickest stop within the limits; at rest it stays.
-  /// @throws std::logic_error before the first Reset.
-  TrackerCommand StepBrake();
+  /// The tick after `state` of the quickest stop within the limits; at rest it stays.
+  JointPoint Brake(const JointPoint& state, double period_s) const noexcept;
 
  private:
-  TrackerCommand Advance(const Eigen::VectorXd& a_next);
-  void CheckStarted() const;
-  void CheckShape(const Eigen::VectorXd& values) const;
+  template <class Acceleration>
+  JointPoint Advance(const JointPoint& state, double period_s,
+                     const Acceleration& acceleration) const noexcept;
 
-  TrackerLimits limits_;
-  double period_s_;
-  Eigen::VectorXd q_, v_, a_;
+  int num_joints_;
+  JointBounds bounds_[kMaxJoints];
 };
 
 }  // namespace sidestep::control

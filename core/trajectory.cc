@@ -34,13 +34,15 @@ void CheckTrajectory(const Trajectory& trajectory) {
   }
 }
 
-TrajectoryPoint Sample(const Trajectory& trajectory, HorizonOffset offset) {
-  const int n = trajectory.num_joints();
+void SampleInto(const Trajectory& trajectory, HorizonOffset offset, Eigen::Ref<Eigen::VectorXd> q,
+                Eigen::Ref<Eigen::VectorXd> v, Eigen::Ref<Eigen::VectorXd> a) noexcept {
   const int last = trajectory.num_states() - 1;
   const double t = offset.seconds();
   if (t < trajectory.t_s(0) || t >= trajectory.t_s(last)) {
-    const int k = t < trajectory.t_s(0) ? 0 : last;
-    return {trajectory.q.col(k), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
+    q = trajectory.q.col(t < trajectory.t_s(0) ? 0 : last);
+    v.setZero();
+    a.setZero();
+    return;
   }
   const double* const begin = trajectory.t_s.data();
   const int k = static_cast<int>(std::upper_bound(begin, begin + last + 1, t) - begin) - 1;
@@ -50,11 +52,16 @@ TrajectoryPoint Sample(const Trajectory& trajectory, HorizonOffset offset) {
   const auto v0 = trajectory.v.col(k), v1 = trajectory.v.col(k + 1);
   // The Hermite basis, and its first and second derivatives in s.
   const double s2 = s * s, s3 = s2 * s;
-  TrajectoryPoint point;
-  point.q = (1 - 3 * s2 + 2 * s3) * q0 + h * (s - 2 * s2 + s3) * v0 + (3 * s2 - 2 * s3) * q1 +
-            h * (s3 - s2) * v1;
-  point.v = (6 * s2 - 6 * s) / h * (q0 - q1) + (1 - 4 * s + 3 * s2) * v0 + (3 * s2 - 2 * s) * v1;
-  point.a = (12 * s - 6) / (h * h) * (q0 - q1) + (6 * s - 4) / h * v0 + (6 * s - 2) / h * v1;
+  q = (1 - 3 * s2 + 2 * s3) * q0 + h * (s - 2 * s2 + s3) * v0 + (3 * s2 - 2 * s3) * q1 +
+      h * (s3 - s2) * v1;
+  v = (6 * s2 - 6 * s) / h * (q0 - q1) + (1 - 4 * s + 3 * s2) * v0 + (3 * s2 - 2 * s) * v1;
+  a = (12 * s - 6) / (h * h) * (q0 - q1) + (6 * s - 4) / h * v0 + (6 * s - 2) / h * v1;
+}
+
+TrajectoryPoint Sample(const Trajectory& trajectory, HorizonOffset offset) {
+  const Eigen::Index n = trajectory.num_joints();
+  TrajectoryPoint point{Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd(n)};
+  SampleInto(trajectory, offset, point.q, point.v, point.a);
   return point;
 }
 

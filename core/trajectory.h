@@ -46,4 +46,8 @@ void CheckTrajectory(const Trajectory& trajectory);
 /// acceleration is that of the interval which begins there.
 TrajectoryPoint Sample(const Trajectory& trajectory, HorizonOffset offset);
 
+/// The same, bit for bit, into vectors of shape n that are there already: allocates nothing.
+void SampleInto(const Trajectory& trajectory, HorizonOffset offset, Eigen::Ref<Eigen::VectorXd> q,
+                Eigen::Ref<Eigen::VectorXd> v, Eigen::Ref<Eigen::VectorXd> a) noexcept;
+
 }  // namespace sidestep

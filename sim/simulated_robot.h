@@ -1,12 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <deque>
 #include <functional>
-#include <optional>
 #include <vector>
 
-#include "sidestep/control/tracker.h"
+#include "sidestep/control/follower.h"
 #include "sidestep/robot/robot_interface.h"
 #include "sidestep/robot/robot_model.h"
 #include "sidestep/sim/world.h"
@@ -14,7 +12,7 @@
 namespace sidestep::sim {
 
 /// The simulated arm, and with AdvanceTo the clock of its world. In each tick of 1 ms:
-///   command = tracker(trajectory), within the robot's limits (control/tracker.h);
+///   command = what the follower says (control/follower.h), within the robot's limits;
 ///   torque  = K (q_command - q) + D (v_command - v) + bias, within the motors' limits,
 /// with the stiffness K and damping D of robot.yaml, and gravity and Coriolis forces as the bias.
 /// The robot's inertia and friction are not compensated, so the arm lags as a real one does.
@@ -30,7 +28,6 @@ class SimulatedRobot final : public robot::RobotInterface {
                  double v_scale = 1);
 
   JointState Read() const override;
-  /// As RobotInterface says. What was submitted before for `start` or later is dropped.
   void Submit(const Trajectory& trajectory, EpisodeTime start) override;
   void Hold() noexcept override;
   /// Steps to the first tick that is not before `t`.
@@ -39,20 +36,13 @@ class SimulatedRobot final : public robot::RobotInterface {
   std::vector<ControlSample> TakeControlLog() override;
 
  private:
-  struct Motion {
-    Trajectory trajectory;
-    EpisodeTime start;
-  };
-
   void Tick();
-  control::TrackerCommand NextCommand();
 
   World& world_;
   std::function<void()> after_tick_;
   Eigen::VectorXd stiffness_, damping_, torque_max_;
-  control::JerkLimitedTracker tracker_;
-  std::optional<Motion> motion_;  ///< followed now; none: brakes, then rests
-  std::deque<Motion> queue_;      ///< to be followed later, by start
+  control::Follower follower_;
+  control::JointPoint commanded_;  ///< the latest command
   std::vector<ControlSample> log_;
 };
 

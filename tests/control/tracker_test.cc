@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "sidestep/core/trajectory.h"
+
 namespace sidestep::control {
 namespace {
 
@@ -26,6 +28,35 @@ TrackerLimits OneJoint(double q, double v, double a, double jerk) {
   return {one(-q), one(q), one(v), one(a), one(jerk)};
 }
 
+struct Sent {
+  VectorXd q, v, a, jerk;
+};
+
+// A tracker, and the motion that it has led to so far.
+class Driven {
+ public:
+  explicit Driven(const TrackerLimits& limits, double period_s = kPeriod_s)
+      : tracker_(limits), period_s_(period_s) {}
+
+  void Start(const VectorXd& q) { state_ = RestAt(q); }
+  void Start(const VectorXd& q, const VectorXd& v, const VectorXd& a) { state_ = {q, v, a}; }
+  Sent Step(const TrajectoryPoint& target) {
+    return Send(tracker_.Step(state_, {target.q, target.v, target.a}, period_s_));
+  }
+  Sent Brake() { return Send(tracker_.Brake(state_, period_s_)); }
+
+ private:
+  Sent Send(const JointPoint& next) {
+    const VectorXd jerk = (next.a - state_.a) / period_s_;
+    state_ = next;
+    return {next.q, next.v, next.a, jerk};
+  }
+
+  JerkLimitedTracker tracker_;
+  double period_s_;
+  JointPoint state_;
+};
+
 // Holds a stream of commands to the limits the way a robot's controller does: by the positions
 // sent alone, and their backward differences.
 class LimitJudge {
@@ -33,7 +64,7 @@ class LimitJudge {
   LimitJudge(const TrackerLimits& limits, const VectorXd& q_start)
       : limits_(limits), q_(q_start), v_(VectorXd::Zero(q_start.size())), a_(v_) {}
 
-  void Judge(const TrackerCommand& command) {
+  void Judge(const Sent& command) {
     const VectorXd v = (command.q - q_) / kPeriod_s;
     const VectorXd a = (v - v_) / kPeriod_s;
     const VectorXd jerk = (a - a_) / kPeriod_s;
@@ -81,7 +112,7 @@ class TrackerUnderLimits : public ::testing::TestWithParam<LimitsCase> {
   const TrackerLimits limits_ =
       TrackerLimits::Of(robot_, GetParam().v_scale, GetParam().a_scale, GetParam().jerk_scale);
   const VectorXd home_ = robot_.configurations().begin()->second;
-  JerkLimitedTracker tracker_{limits_, kPeriod_s};
+  Driven tracker_{limits_};
 
   // A cubic trajectory through random states: some calm, some far beyond every limit.
   Trajectory RandomTrajectory(std::mt19937_64& random) {
@@ -108,14 +139,14 @@ TEST_P(TrackerUnderLimits, BreaksNoneWhateverItIsToldToFollow) {
   std::mt19937_64 random(1);
   std::uniform_int_distribution<int> duration_ticks(1, 1500);
   LimitJudge judge(limits_, home_);
-  tracker_.Reset(home_);
+  tracker_.Start(home_);
   for (int tick = 0; tick < 20000;) {
     const Trajectory trajectory = RandomTrajectory(random);
     const int end = tick + duration_ticks(random);
     const bool brake = random() % 5 == 0;
     for (int k = 1; tick < end; ++tick, ++k) {
       const TrajectoryPoint target = Sample(trajectory, HorizonOffset(k * kPeriod_s));
-      ASSERT_NO_FATAL_FAILURE(judge.Judge(brake ? tracker_.StepBrake() : tracker_.Step(target)));
+      ASSERT_NO_FATAL_FAILURE(judge.Judge(brake ? tracker_.Brake() : tracker_.Step(target)));
     }
   }
   if (std::isfinite(limits_.jerk_max(0))) {
@@ -128,8 +159,8 @@ TEST_P(TrackerUnderLimits, BreaksNoneWhateverItIsToldToFollow) {
 TEST_P(TrackerUnderLimits, ArrivesAtAFixedTargetAndStays) {
   for (const auto& [name, q] : robot_.configurations()) {
     LimitJudge judge(limits_, home_);
-    tracker_.Reset(home_);
-    TrackerCommand command;
+    tracker_.Start(home_);
+    Sent command;
     for (int tick = 0; tick < 20000; ++tick) {
       command = tracker_.Step(At(q));
       ASSERT_NO_FATAL_FAILURE(judge.Judge(command));
@@ -140,9 +171,9 @@ TEST_P(TrackerUnderLimits, ArrivesAtAFixedTargetAndStays) {
 }
 
 TEST_P(TrackerUnderLimits, StopsAtItsRangeWhenTheTargetLiesBeyond) {
-  tracker_.Reset(home_);
+  tracker_.Start(home_);
   LimitJudge judge(limits_, home_);
-  TrackerCommand command;
+  Sent command;
   for (int tick = 0; tick < 20000; ++tick) {
     command = tracker_.Step(At(limits_.q_max + VectorXd::Ones(home_.size())));
     ASSERT_NO_FATAL_FAILURE(judge.Judge(command));
@@ -176,8 +207,8 @@ TEST(JerkLimitedTracker, FollowsAPlanWithinTheLimitsToTenMicroradians) {
     plan.q.col(k) = start + (goal - start) * (s * s * s * (10 - 15 * s + 6 * s * s));
     plan.v.col(k) = (goal - start) * (30 * s * s * (1 - s) * (1 - s)) / 3;
   }
-  JerkLimitedTracker tracker(TrackerLimits::Of(panda), kPeriod_s);
-  tracker.Reset(start);
+  Driven tracker(TrackerLimits::Of(panda));
+  tracker.Start(start);
   double worst_rad = 0;
   for (int tick = 1; tick <= 3000; ++tick) {
     const TrajectoryPoint target = Sample(plan, HorizonOffset(tick * kPeriod_s));
@@ -191,8 +222,8 @@ TEST(JerkLimitedTracker, FollowsAPlanWithinTheLimitsToTenMicroradians) {
 // t = 2 / w, is 0.2707 da / w^2.
 TEST(JerkLimitedTracker, AnswersAJumpOfAccelerationAsItsThreePolesSay) {
   const double da = 5, w = 100, period_s = 1e-4;  // fine enough to compare with continuous time
-  JerkLimitedTracker tracker(OneJoint(10, 2, 10, 1e4), period_s);
-  tracker.Reset(VectorXd::Zero(1));
+  Driven tracker(OneJoint(10, 2, 10, 1e4), period_s);
+  tracker.Start(VectorXd::Zero(1));
   double peak_rad = 0, last_rad = 0;
   for (int tick = 1; tick <= 3000; ++tick) {
     const double t = tick * period_s;
@@ -211,11 +242,11 @@ TEST(JerkLimitedTracker, BrakesInTheLeastTimeThereIs) {
   for (const double v : {0.01, 0.1, 0.5, 1.0, 2.0}) {
     for (const double jerk : {50.0, 500.0, 5000.0}) {
       const double A = 7.5;
-      JerkLimitedTracker tracker(OneJoint(10, 2.1, A, jerk), kPeriod_s);
-      tracker.Reset(VectorXd::Zero(1), VectorXd::Constant(1, v), VectorXd::Zero(1));
+      Driven tracker(OneJoint(10, 2.1, A, jerk));
+      tracker.Start(VectorXd::Zero(1), VectorXd::Constant(1, v), VectorXd::Zero(1));
       int ticks = 0;
-      for (TrackerCommand command; ticks < 5000; ++ticks) {
-        command = tracker.StepBrake();
+      for (Sent command; ticks < 5000; ++ticks) {
+        command = tracker.Brake();
         ASSERT_GE(command.v(0), -1e-12) << "it went back";
         if (command.v(0) < 1e-12) break;
       }
@@ -228,10 +259,10 @@ TEST(JerkLimitedTracker, BrakesInTheLeastTimeThereIs) {
 
 TEST(JerkLimitedTracker, StaysExactlyWhereItRests) {
   const VectorXd q = VectorXd::Constant(1, 0.1234567);
-  JerkLimitedTracker tracker(OneJoint(2, 2, 10, 1000), kPeriod_s);
-  tracker.Reset(q);
+  Driven tracker(OneJoint(2, 2, 10, 1000));
+  tracker.Start(q);
   for (int tick = 0; tick < 1000; ++tick) {
-    const TrackerCommand command = tick % 2 == 0 ? tracker.StepBrake() : tracker.Step(At(q));
+    const Sent command = tick % 2 == 0 ? tracker.Brake() : tracker.Step(At(q));
     ASSERT_EQ(command.q(0), q(0));
     ASSERT_EQ(command.v(0), 0);
     ASSERT_EQ(command.a(0), 0);
@@ -240,69 +271,59 @@ TEST(JerkLimitedTracker, StaysExactlyWhereItRests) {
 }
 
 TEST(JerkLimitedTracker, ComesToExactRestWhenBraked) {
-  JerkLimitedTracker tracker(OneJoint(2, 2, 10, 1000), kPeriod_s);
-  tracker.Reset(VectorXd::Zero(1), VectorXd::Constant(1, 0.7654321), VectorXd::Constant(1, 3.21));
-  TrackerCommand command;
-  for (int tick = 0; tick < 500; ++tick) command = tracker.StepBrake();
+  Driven tracker(OneJoint(2, 2, 10, 1000));
+  tracker.Start(VectorXd::Zero(1), VectorXd::Constant(1, 0.7654321), VectorXd::Constant(1, 3.21));
+  Sent command;
+  for (int tick = 0; tick < 500; ++tick) command = tracker.Brake();
   EXPECT_EQ(command.v(0), 0);
   EXPECT_EQ(command.a(0), 0);
 }
 
 TEST(JerkLimitedTracker, GoesOnFromAMovingStateWithoutAJump) {
   const TrackerLimits limits = OneJoint(2, 2, 10, 1000);
-  JerkLimitedTracker first(limits, kPeriod_s), second(limits, kPeriod_s);
-  first.Reset(VectorXd::Zero(1));
-  TrackerCommand command;
+  Driven first(limits), second(limits);
+  first.Start(VectorXd::Zero(1));
+  Sent command;
   for (int tick = 0; tick < 100; ++tick) command = first.Step(At(VectorXd::Ones(1)));
   ASSERT_GT(command.v(0), 0.1);
-  second.Reset(command.q, command.v, command.a);
+  second.Start(command.q, command.v, command.a);
   for (int tick = 0; tick < 100; ++tick) {
     EXPECT_EQ(first.Step(At(VectorXd::Ones(1))).q, second.Step(At(VectorXd::Ones(1))).q);
   }
 }
 
 TEST(JerkLimitedTracker, ComesBackFromBeyondItsRangeAndNeverGoesFurtherOut) {
-  JerkLimitedTracker tracker(OneJoint(1, 2, 10, 1000), kPeriod_s);
-  tracker.Reset(VectorXd::Constant(1, 1.2));
+  Driven tracker(OneJoint(1, 2, 10, 1000));
+  tracker.Start(VectorXd::Constant(1, 1.2));
   double outermost = 0;
   for (int tick = 0; tick < 500; ++tick) {
     outermost = std::max(outermost, tracker.Step(At(VectorXd::Constant(1, 5))).q(0));
   }
   EXPECT_EQ(outermost, 1.2);
-  TrackerCommand command;
+  Sent command;
   for (int tick = 0; tick < 2000; ++tick) command = tracker.Step(At(VectorXd::Constant(1, 0.5)));
   EXPECT_NEAR(command.q(0), 0.5, 1e-9);
 }
 
 TEST(JerkLimitedTracker, BrakesAtOnceWhenItIsStartedTooFastToStopInTime) {
-  JerkLimitedTracker tracker(OneJoint(1, 2, 10, 1000), kPeriod_s),
-      braking(OneJoint(1, 2, 10, 1000), kPeriod_s);
-  for (JerkLimitedTracker* t : {&tracker, &braking}) {
-    t->Reset(VectorXd::Constant(1, 0.99), VectorXd::Constant(1, 1.5), VectorXd::Zero(1));
+  Driven tracker(OneJoint(1, 2, 10, 1000)), braking(OneJoint(1, 2, 10, 1000));
+  for (Driven* t : {&tracker, &braking}) {
+    t->Start(VectorXd::Constant(1, 0.99), VectorXd::Constant(1, 1.5), VectorXd::Zero(1));
   }
   for (int tick = 0; tick < 100; ++tick) {
-    EXPECT_EQ(tracker.Step(At(VectorXd::Constant(1, 5))).q, braking.StepBrake().q) << tick;
+    EXPECT_EQ(tracker.Step(At(VectorXd::Constant(1, 5))).q, braking.Brake().q) << tick;
   }
 }
 
 TEST(JerkLimitedTracker, RefusesNonsense) {
   const VectorXd one = VectorXd::Ones(1), two = VectorXd::Ones(2);
-  const VectorXd nan = VectorXd::Constant(1, std::numeric_limits<double>::quiet_NaN());
-  EXPECT_THROW(JerkLimitedTracker(OneJoint(1, 1, 1, 1), 0), std::invalid_argument);
-  EXPECT_THROW(JerkLimitedTracker(OneJoint(1, 0, 1, 1), kPeriod_s), std::invalid_argument);
-  EXPECT_THROW(JerkLimitedTracker(OneJoint(1, 1, -1, 1), kPeriod_s), std::invalid_argument);
-  EXPECT_THROW(JerkLimitedTracker(OneJoint(0, 1, 1, 1), kPeriod_s), std::invalid_argument);
-  EXPECT_THROW(JerkLimitedTracker(OneJoint(1, kInfinity, 1, 1), kPeriod_s), std::invalid_argument);
-  EXPECT_THROW(JerkLimitedTracker({-one, two, one, one, one}, kPeriod_s), std::invalid_argument);
-
-  JerkLimitedTracker tracker(OneJoint(1, 1, 1, 1), kPeriod_s);
-  EXPECT_THROW(tracker.Step(At(one)), std::logic_error);
-  EXPECT_THROW(tracker.StepBrake(), std::logic_error);
-  EXPECT_THROW(tracker.Reset(two), std::invalid_argument);
-  EXPECT_THROW(tracker.Reset(nan), std::invalid_argument);
-  tracker.Reset(one);
-  EXPECT_THROW(tracker.Step(At(two)), std::invalid_argument);
-  EXPECT_THROW(tracker.Step(At(nan)), std::invalid_argument);
+  const VectorXd many = VectorXd::Ones(kMaxJoints + 1);
+  EXPECT_THROW(JerkLimitedTracker(OneJoint(1, 0, 1, 1)), std::invalid_argument);
+  EXPECT_THROW(JerkLimitedTracker(OneJoint(1, 1, -1, 1)), std::invalid_argument);
+  EXPECT_THROW(JerkLimitedTracker(OneJoint(0, 1, 1, 1)), std::invalid_argument);
+  EXPECT_THROW(JerkLimitedTracker(OneJoint(1, kInfinity, 1, 1)), std::invalid_argument);
+  EXPECT_THROW(JerkLimitedTracker({-one, two, one, one, one}), std::invalid_argument);
+  EXPECT_THROW(JerkLimitedTracker({-many, many, many, many, many}), std::invalid_argument);
 }
 
 }  // namespace

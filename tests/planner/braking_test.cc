@@ -140,13 +140,14 @@ TEST(Braking, KeepsEveryLimitThatCanBeKeptAndTheDirectionWhereOneTimeCan) {
 TEST(Braking, IsFollowedByTheTrackerToTheMillimetre) {
   const robot::RobotModel arm = MakePlanarArm();
   const Eigen::Vector2d q(0.3, -0.4), v(1.8, -0.7), a(5, -5);
-  control::JerkLimitedTracker tracker(control::TrackerLimits::Of(arm), 0.001);
-  tracker.Reset(q, v, a);
+  const control::JerkLimitedTracker tracker(control::TrackerLimits::Of(arm));
+  control::JointPoint command = {q, v, a};
   const Trajectory motion = MakeBraking(arm.limits(), From(q, v), kStep_s, kNumStates);
   double worst_rad = 0;
   for (int tick = 1; tick <= 1000; ++tick) {
     const TrajectoryPoint target = Sample(motion, HorizonOffset(0.001 * tick));
-    worst_rad = std::max(worst_rad, (tracker.Step(target).q - target.q).cwiseAbs().maxCoeff());
+    command = tracker.Step(command, {target.q, target.v, target.a}, 0.001);
+    worst_rad = std::max(worst_rad, (command.q - target.q).cwiseAbs().maxCoeff());
   }
   EXPECT_LT(worst_rad, 1e-3);
 }
