@@ -2,22 +2,26 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
 #include <deque>
 #include <exception>
 #include <iterator>
-#include <limits>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
+#include "sidestep/bench/clock.h"
+#include "sidestep/bench/episode_recorder.h"
+#include "sidestep/bench/latency.h"
 #include "sidestep/bench/metrics/registry.h"
 #include "sidestep/bench/planner_settings.h"
+#include "sidestep/bench/planning_worker.h"
 #include "sidestep/bench/sensor_watch.h"
 #include "sidestep/bench/true_world.h"
 #include "sidestep/core/cpu_time.h"
 #include "sidestep/core/goal.h"
 #include "sidestep/planner/registry.h"
 #include "sidestep/planner/replanner.h"
-#include "sidestep/scenarios/yaml_text.h"
+#include "sidestep/robot/robot_error.h"
 #include "sidestep/sdf/world_model.h"
 
 namespace sidestep::bench {
@@ -26,65 +30,11 @@ namespace {
 constexpr double kAfterGoal = 0.5;     // s of episode after the goal is reached
 constexpr double kHorizons = 2;        // an episode lasts at most this many horizons
 constexpr double kTimeEpsilon = 1e-9;  // s; far below a physics step, far above rounding
+constexpr double kPoll_s = 2e-3;       // on a wall clock, how long nobody looks up
+constexpr double kLongestStop_s = 3;   // an arm that is told to hold rests by then
+constexpr double kStill_rad_s = 0.01;
 
-// Appends the indices at which two grids of one size differ. Most of a scan is as it was, and most
-// of the time of a plain loop would go into finding that out.
-void AppendChanges(const std::vector<std::uint8_t>& before, const std::vector<std::uint8_t>& now,
-                   std::vector<std::int64_t>& changed) {
-  constexpr std::size_t kBlock = 256;
-  for (std::size_t begin = 0; begin < now.size(); begin += kBlock) {
-    const std::size_t end = std::min(begin + kBlock, now.size());
-    if (std::memcmp(&before[begin], &now[begin], end - begin) == 0) continue;
-    for (std::size_t i = begin; i < end; ++i) {
-      if (now[i] != before[i]) changed.push_back(static_cast<std::int64_t>(i));
-    }
-  }
-}
-
-record::AskedLimits LimitsAskedFor(const scenarios::Scenario& scenario,
-                                   const robot::RobotModel& robot) {
-  constexpr double kNone = std::numeric_limits<double>::infinity();
-  const double v_scale = scenario.velocity_limits ? scenario.velocity_scale : kNone;
-  const double a_scale = scenario.acceleration_limits ? scenario.acceleration_scale : kNone;
-  const Eigen::Index n = robot.num_joints();
-  record::AskedLimits asked = {Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd(n),
-                               Eigen::VectorXd(n)};
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const robot::JointLimits& joint = robot.limits()[static_cast<std::size_t>(j)];
-    asked.v_max(j) = v_scale * joint.v_max;
-    asked.a_max(j) = a_scale * joint.a_max;
-    asked.jerk_max(j) = joint.jerk_max;
-    asked.torque_rate_max(j) = joint.torque_rate_max;
-  }
-  return asked;
-}
-
-record::Recording BeginRecording(const scenarios::Scenario& scenario,
-                                 const robot::RobotModel& robot, const EpisodeWorld& world) {
-  record::Recording recording;
-  recording.header = {{"scenario", scenario.name},       {"robot", robot.name()},
-                      {"planner", scenario.planner},     {"knowledge", scenario.knowledge},
-                      {"predictor", scenario.predictor}, {"seed", std::to_string(scenario.seed)}};
-  for (const auto& [choice, chosen] : scenario.choices) {
-    recording.header["choice." + choice] = chosen;
-  }
-  for (const auto& [key, value] : scenario.drawn) {
-    recording.header["drawn." + key] = scenarios::Number(value);
-  }
-  recording.scenario_yaml = scenarios::ToYaml(scenario);
-  recording.model_xml = world.model_xml;
-  recording.joints = world.joints;
-  recording.obstacles = world.obstacles;
-  recording.q_start = scenario.q_start;
-  recording.q_goal = scenario.q_goal;
-  recording.dwell_s = scenario.dwell_s;
-  recording.v_max.resize(robot.num_joints());
-  for (int i = 0; i < robot.num_joints(); ++i) {
-    recording.v_max(i) = robot.limits()[static_cast<std::size_t>(i)].v_max;
-  }
-  recording.limits = LimitsAskedFor(scenario, robot);
-  return recording;
-}
+constexpr const char* kLate = "late";  // the status of a plan that came after its moment
 
 constexpr const char* kStages[] = {"sense", "map", "segment", "track", "predict", "optimise"};
 
@@ -112,18 +62,21 @@ class HoldAtTheEnd {
 class Loop {
  public:
   Loop(const scenarios::Scenario& scenario, const robot::RobotModel& robot, EpisodeWorld& world,
-       const FieldObserver& observe_field)
+       const EpisodeOptions& options)
       : scenario_(scenario),
         world_(world),
-        sensor_(*world.sensor),
-        observe_field_(observe_field),
+        sensors_(world.sensors.begin(), world.sensors.end()),
+        options_(options),
         planner_(planner::MakePlanner(scenario.planner, robot, MakePlannerSettings(scenario))),
         model_(sdf::MakeWorldModel(MakeWorldModelOptions(
             scenario, scenario.epsilon_m + robot.largest_sphere_radius_m(), world))),
-        replanner_(*planner_, *model_, {scenario.horizon_s, scenario.step_s, scenario.q_goal}),
+        replanner_(*planner_, {scenario.horizon_s, scenario.step_s, scenario.q_goal}),
         goal_(scenario.q_goal, scenario.dwell_s),
+        latency_(scenario),
+        clock_(options.wall_clock ? MakeWallClock() : MakeVirtualClock()),
+        worker_(options.wall_clock ? MakeThreadWorker() : MakeInlineWorker()),
+        recorder_(scenario, robot, world),
         end_s_(kHorizons * scenario.horizon_s) {
-    result_.recording = BeginRecording(scenario, robot, world);
     for (const char* const stage : kStages) result_.times[stage];
     result_.times["cycle"];
   }
@@ -132,6 +85,9 @@ class Loop {
     try {
       Go();
       KeepLastContact();
+    } catch (const robot::RobotError& error) {
+      Abort(error.what());
+      KeepTicks(error.last_ticks());
     } catch (const std::exception& error) {
       Abort(error.what());
     } catch (...) {
@@ -146,22 +102,43 @@ class Loop {
     double effect_s;
   };
 
+  // A cycle that has begun and whose result has not been taken.
+  struct Begun {
+    double t_s;
+    HorizonOffset expected;  // to take so long
+    std::shared_ptr<const sdf::DistanceField> field;
+  };
+
   void Go() {
     while (true) {
+      if (options_.is_stopped && options_.is_stopped()) return Stop();
       // Of things due at the same time, plans take effect first, then scans, then a new cycle.
-      const double next_s =
-          std::max(now_s_, std::min({NextEffect(), NextScan(), next_cycle_s_, end_s_}));
-      Advance(next_s);
-      if (next_s >= end_s_) break;
-      if (NextEffect() <= next_s) {
+      double next_s = std::min({NextEffect(), NextScan(), NextCycle(), end_s_});
+      if (options_.wall_clock) next_s = std::min(next_s, now_s_ + kPoll_s);
+      Advance(clock_->WaitUntil(EpisodeTime(std::max(now_s_, next_s))).seconds());
+      if (now_s_ >= end_s_) break;
+      TakeCycle();
+      if (NextEffect() <= now_s_) {
         world_.robot->Submit(pending_.front().plan.trajectory, pending_.front().plan.start);
         pending_.pop_front();
-      } else if (NextScan() <= next_s) {
+      } else if (NextScan() <= now_s_) {
         Sense();
-      } else {
-        Replan(next_s);
+      } else if (NextCycle() <= now_s_) {
+        BeginCycle();
       }
     }
+  }
+
+  // Somebody wants it to end: the robot comes to rest first.
+  void Stop() {
+    world_.robot->Hold();
+    const double latest_s = now_s_ + kLongestStop_s;
+    for (bool at_rest = false; !at_rest && now_s_ < latest_s;) {
+      Advance(clock_->WaitUntil(EpisodeTime(now_s_ + 0.01)).seconds());
+      at_rest = world_.robot->Read().v.cwiseAbs().maxCoeff() <= kStill_rad_s;
+    }
+    is_aborted_ = true;
+    result_.reason = "it was stopped from outside";
   }
 
   // Stops the robot first of all. What happened before is worth keeping, but whatever failed may
@@ -182,7 +159,19 @@ class Loop {
   }
 
   double NextEffect() const { return pending_.empty() ? end_s_ + 1 : pending_.front().effect_s; }
-  double NextScan() const { return sensor_.NextDue().seconds(); }
+  double NextCycle() const { return worker_->is_busy() ? end_s_ + 1 : next_cycle_s_; }
+  double NextScan() {
+    const SensorWatch* const next = NextSensor();
+    return next == nullptr ? end_s_ + 1 : next->NextDue().seconds();
+  }
+  // The one that is due first.
+  SensorWatch* NextSensor() {
+    const auto earlier = [](const SensorWatch& a, const SensorWatch& b) {
+      return a.NextDue() < b.NextDue();
+    };
+    const auto first = std::min_element(sensors_.begin(), sensors_.end(), earlier);
+    return first == sensors_.end() ? nullptr : &*first;
+  }
 
   void Advance(double t_s) {
     now_s_ = t_s;
@@ -191,12 +180,16 @@ class Loop {
     KeepTruth();
   }
 
-  void KeepTicks() {
-    record::Recording& recording = result_.recording;
-    for (ControlSample& tick : world_.robot->TakeControlLog()) {
+  void KeepTicks() { KeepTicks(world_.robot->TakeControlLog()); }
+
+  // Those that are not kept already.
+  void KeepTicks(std::vector<ControlSample> ticks) {
+    const std::vector<ControlSample>& kept = recorder_.recording().control;
+    for (ControlSample& tick : ticks) {
+      if (!kept.empty() && tick.t <= kept.back().t) continue;
       if (tick.t.seconds() <= end_s_ + kTimeEpsilon) goal_.Observe(tick.t, tick.q, tick.v);
       if (goal_.dwelt()) end_s_ = std::min(end_s_, goal_.dwelt()->seconds() + kAfterGoal);
-      if (tick.t.seconds() <= end_s_ + kTimeEpsilon) recording.control.push_back(std::move(tick));
+      if (tick.t.seconds() <= end_s_ + kTimeEpsilon) recorder_.Keep(std::move(tick));
     }
   }
 
@@ -206,8 +199,7 @@ class Loop {
   }
 
   void KeepTruth(TruthSample sample) {
-    if (sample.t.seconds() > end_s_ + kTimeEpsilon) return;
-    result_.recording.truth.push_back(std::move(sample));
+    if (sample.t.seconds() <= end_s_ + kTimeEpsilon) recorder_.Keep(std::move(sample));
   }
 
   void KeepLastContact() {
@@ -218,47 +210,65 @@ class Loop {
 
   void Sense() {
     const double begin = ThreadCpuSeconds();
-    const std::optional<Scan> scan = sensor_.Read(EpisodeTime(now_s_));
+    const std::optional<Scan> scan = NextSensor()->Read(EpisodeTime(now_s_));
     sense_s_ += ThreadCpuSeconds() - begin;
-    if (scan) {
-      model_->Observe(*scan);
-      std::vector<TrackEvent>& events = result_.recording.events;
-      for (TrackEvent& event : model_->TakeEvents()) events.push_back(std::move(event));
-      KeepObservation(*scan);
-    }
+    if (!scan) return;
+    model_->Observe(*scan);
+    for (TrackEvent& event : model_->TakeEvents()) recorder_.Keep(std::move(event));
+    recorder_.Keep(*scan, EpisodeTime(now_s_), model_->Occupancy());
+    has_seen_ = true;
   }
 
-  void KeepObservation(const Scan& scan) {
-    record::ObservationRecord& record = result_.recording.observations.emplace_back();
-    record.t = scan.t;
-    record.t_arrival = EpisodeTime(now_s_);
-    const std::vector<std::uint8_t>& cells = model_->Occupancy().cells;
-    last_cells_.resize(cells.size(), 0);
-    AppendChanges(last_cells_, cells, record.changed_cells);
-    last_cells_ = cells;
-    for (const ObjectObservation& object : scan.objects) {
-      record.objects.push_back({object.id, object.X_WO, object.covariance});
-    }
-  }
-
-  void Replan(double t_s) {
-    const double latency_s = scenario_.latency_s;
-    // The first multiple of the period that is past this cycle's own time.
-    next_cycle_s_ = ++cycle_index_ / scenario_.replan_rate_hz;
-    while (next_cycle_s_ < t_s + latency_s - kTimeEpsilon) {
+  // The first multiple of the period that is past `t_s`, or as good as there, and not used yet.
+  void ScheduleCycle(double t_s) {
+    while (next_cycle_s_ < t_s - kTimeEpsilon) {
       next_cycle_s_ = ++cycle_index_ / scenario_.replan_rate_hz;
     }
-    if (!sensor_.has_seen()) return;  // nothing is known yet
-    planner::Replanner::Cycle cycle =
-        replanner_.Run(EpisodeTime(t_s), world_.robot->Read(), HorizonOffset(latency_s), goal_);
-    if (cycle.plan) pending_.push_back({*cycle.plan, t_s + latency_s});
-    result_.recording.cycles.push_back(std::move(cycle.record));
-    KeepTimes(cycle);
-    // No scan has come in since, so this is the same field.
-    if (observe_field_) observe_field_(EpisodeTime(t_s), model_->MakeField(), world_.truth);
   }
 
-  void KeepTimes(const planner::Replanner::Cycle& cycle) {
+  void BeginCycle() {
+    const HorizonOffset expected = latency_.Expected();
+    next_cycle_s_ = ++cycle_index_ / scenario_.replan_rate_hz;
+    // In real time a cycle that is done early need not wait for its moment.
+    if (!options_.wall_clock) ScheduleCycle(now_s_ + expected.seconds());
+    if (!has_seen_) return;  // nothing is known yet
+    begun_ = {now_s_, expected, model_->MakeField()};
+    worker_->Begin(
+        [this, task = replanner_.Prepare(EpisodeTime(now_s_), world_.robot->Read(), expected, goal_,
+                                         begun_.field)] { return replanner_.Work(task); });
+    if (!options_.wall_clock) TakeCycle();
+  }
+
+  // Takes the result of a cycle, if one is there.
+  void TakeCycle() {
+    std::optional<planner::CycleResult> cycle = worker_->TakeFinished();
+    if (!cycle) return;
+    const double cpu_s = KeepTimes(*cycle);
+    const double took_s =
+        options_.wall_clock ? now_s_ - begun_.t_s : latency_.Charge(cpu_s).seconds();
+    latency_.Learn(options_.wall_clock ? took_s : cpu_s);
+    const double effect_s = begun_.t_s + begun_.expected.seconds();
+    CycleRecord& record = cycle->record;
+    if (cycle->plan && begun_.t_s + took_s > effect_s + kTimeEpsilon) {
+      record.accepted = false;
+      record.status = kLate;
+      ++result_.late_plans;
+    } else if (cycle->plan) {
+      replanner_.Accept(*cycle);
+      // It agrees with what runs until it takes effect, or begins then. On a wall clock, where
+      // nobody may be looking at that very moment, the robot has it before.
+      pending_.push_back({*cycle->plan, options_.wall_clock ? now_s_ : effect_s});
+    }
+    ScheduleCycle(begun_.t_s + took_s);
+    record.objects = model_->DescribeObjects(planner::TimesToDescribe(record));
+    recorder_.Keep(std::move(record));
+    if (options_.observe_field) {
+      options_.observe_field(EpisodeTime(begun_.t_s), begun_.field, world_.truth);
+    }
+  }
+
+  // @return the CPU time that the cycle needed.
+  double KeepTimes(const planner::CycleResult& cycle) {
     const sdf::WorldModelTimes map = model_->TakeTimes();
     const double seconds[] = {sense_s_,    map.map_s,     map.segment_s,
                               map.track_s, map.predict_s, cycle.optimise_s};
@@ -269,11 +279,13 @@ class Loop {
       sum += seconds[i];
     }
     result_.times["cycle"].push_back(sum);
+    if (sum > begun_.expected.seconds()) ++result_.cycles_over_charge;
     sense_s_ = 0;
+    return sum;
   }
 
   EpisodeResult Finish() {
-    record::Recording& recording = result_.recording;
+    record::Recording recording = recorder_.Take();
     for (const Metric& metric : Metrics()) {
       recording.metrics[metric.name] = metric.compute(recording);
     }
@@ -283,25 +295,34 @@ class Loop {
       result_.reason = WhyNoPlan(recording);
     }
     if (!result_.reason.empty()) recording.header["reason"] = result_.reason;
+    for (const SensorWatch& sensor : sensors_) {
+      result_.scans_left_out[sensor.name()] += sensor.num_left_out();
+    }
+    result_.recording = std::move(recording);
     return std::move(result_);
   }
 
   const scenarios::Scenario& scenario_;
   EpisodeWorld& world_;
-  SensorWatch sensor_;
-  const FieldObserver& observe_field_;
+  std::vector<SensorWatch> sensors_;
+  const EpisodeOptions& options_;
   std::unique_ptr<planner::Planner> planner_;
   std::unique_ptr<sdf::WorldModel> model_;
   planner::Replanner replanner_;
   GoalWatch goal_;
+  LatencyModel latency_;
+  std::unique_ptr<Clock> clock_;
+  std::unique_ptr<PlanningWorker> worker_;
+  EpisodeRecorder recorder_;
 
   std::deque<Pending> pending_;
-  std::vector<std::uint8_t> last_cells_;  // filled by the latest scan
+  Begun begun_ = {};
   double now_s_ = 0;
   int cycle_index_ = 0;
   double next_cycle_s_ = 0;
   double end_s_;
   double sense_s_ = 0;
+  bool has_seen_ = false;
   bool is_aborted_ = false;
   EpisodeResult result_;
 };
@@ -330,11 +351,11 @@ sdf::WorldModelOptions MakeWorldModelOptions(const scenarios::Scenario& scenario
 }
 
 EpisodeResult RunEpisode(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
-                         const WorldFactory& make_world, const FieldObserver& observe_field) {
+                         const WorldFactory& make_world, const EpisodeOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   EpisodeWorld world = make_world(scenario, robot);
   const HoldAtTheEnd hold(*world.robot);
-  EpisodeResult result = Loop(scenario, robot, world, observe_field).Run();
+  EpisodeResult result = Loop(scenario, robot, world, options).Run();
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;
 }

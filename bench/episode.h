@@ -4,49 +4,18 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "sidestep/bench/episode_world.h"
 #include "sidestep/bench/outcome.h"
 #include "sidestep/record/recording.h"
-#include "sidestep/robot/robot_interface.h"
 #include "sidestep/robot/robot_model.h"
-#include "sidestep/robot/sensor.h"
 #include "sidestep/robot/world_truth.h"
 #include "sidestep/scenarios/scenario.h"
 #include "sidestep/sdf/distance_field.h"
 #include "sidestep/sdf/world_model.h"
 
 namespace sidestep::bench {
-
-/// A robot in its world, for one episode. The pointers live as long as `owner`.
-struct EpisodeWorld {
-  std::shared_ptr<void> owner;
-  robot::RobotInterface* robot = nullptr;
-  robot::Sensor* sensor = nullptr;
-  robot::WorldTruth* truth = nullptr;  ///< null on hardware: then nothing is judged by geometry
-  std::string model_xml;               ///< to draw it
-  std::vector<std::string> joints, obstacles;
-};
-
-/// The world that `source` holds (a Simulation, or what stands for it on hardware), kept alive by
-/// it. A template, because bench knows the interfaces of robot/ alone.
-template <class Source>
-EpisodeWorld MakeEpisodeWorld(std::shared_ptr<Source> source) {
-  EpisodeWorld world;
-  world.robot = &source->robot();
-  world.sensor = &source->sensor();
-  world.truth = &source->truth();
-  world.model_xml = source->model_xml();
-  world.joints = source->joints();
-  world.obstacles = source->obstacles();
-  world.owner = std::move(source);
-  return world;
-}
-
-/// Makes the world of a scenario; simulation and hardware each have one.
-using WorldFactory =
-    std::function<EpisodeWorld(const scenarios::Scenario&, const robot::RobotModel&)>;
 
 /// How the scenario's model of the world is made, fed from `world`. Its fields hold no reference to
 /// either and tell distances up to `max_distance_m`.
@@ -71,21 +40,38 @@ struct EpisodeResult {
   record::Recording recording;  ///< its metrics are filled
   StageTimes times;             ///< has every stage, even where there was no planning cycle
   double wall_s = 0;            ///< of the whole episode
+  /// Cycles that needed more CPU time than they were charged: that took less than they take.
+  int cycles_over_charge = 0;
+  int late_plans = 0;  ///< that came after the moment they were made for, and were dropped
+  /// Scans by each sensor's name that were captured no later than the one before, and left out.
+  std::map<std::string, int> scans_left_out;
+};
+
+/// How an episode is run, beside what the scenario says.
+struct EpisodeOptions {
+  FieldObserver observe_field;
+  /// Asked again and again: once it says true, the robot brakes, and when it rests the episode ends
+  /// as aborted.
+  std::function<bool()> is_stopped;
+  /// On a wall clock time passes as it does, planning has a thread of its own, and a plan that is
+  /// not there when it was to take effect is dropped. No two such runs are alike.
+  bool wall_clock = false;
 };
 
 /// Runs one closed loop: sense, predict, re-plan, splice, move, until 0.5 s after the goal is
-/// reached or twice the horizon. Everything but `times` and `wall_s` is a function of the scenario
-/// and the build. A planning cycle begins at multiples of 1 / replan_rate and takes
-/// scenario.latency_s of episode time; the next one begins at the first multiple after that.
+/// reached or twice the horizon. On virtual time, unless the latency is measured, everything but
+/// `times`, `wall_s` and `cycles_over_charge` is a function of the scenario and the build. A
+/// planning cycle begins at multiples of 1 / replan_rate and takes what bench/latency.h says, or on
+/// a wall clock what it takes; the next one begins at the first multiple after that.
 ///
-/// What is thrown on the way (by the robot, the sensor, the planner, the observer ...) ends the
+/// What is thrown on the way (by the robot, a sensor, the planner, the observer ...) ends the
 /// episode as aborted: what was recorded until then is the result. However it ends, the robot is
 /// told to hold.
 /// @param scenario with its task resolved (bench/resolve.h).
 /// @throws std::invalid_argument for words of the scenario that no module knows, and whatever
 /// `make_world` throws: then there was no episode.
 EpisodeResult RunEpisode(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
-                         const WorldFactory& make_world, const FieldObserver& observe_field = {});
+                         const WorldFactory& make_world, const EpisodeOptions& options = {});
 
 /// For whom a part of an episode is of no use. @throws std::runtime_error, with the reason, if it
 /// was aborted.

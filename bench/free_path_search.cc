@@ -29,7 +29,8 @@ FreePath SearchFreePath(const scenarios::Scenario& scenario, const robot::RobotM
   request.q_start = scenario.q_start;
   request.v_start = Eigen::VectorXd::Zero(robot.num_joints());
   request.q_goal = scenario.q_goal;
-  request.num_fixed = 1 + static_cast<int>(std::ceil(scenario.latency_s / scenario.step_s - 1e-9));
+  request.num_fixed =
+      1 + static_cast<int>(std::ceil(scenario.longest_latency_s() / scenario.step_s - 1e-9));
 
   RandomStream random(seed, "free path search");
   FreePath best;

@@ -86,7 +86,11 @@ std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& s
   json["identity"] = {
       {"run", RunId(identity)}, {"scenario", identity.scenario}, {"models", identity.models}};
   json["versions"] = versions;
-  json["wall_clock"] = {{"episode_s", result.wall_s}, {"cycle_cpu", StageTable(result.times)}};
+  json["scans_left_out"] = result.scans_left_out;
+  json["wall_clock"] = {{"episode_s", result.wall_s},
+                        {"cycle_cpu", StageTable(result.times)},
+                        {"cycles_over_charge", result.cycles_over_charge},
+                        {"late_plans", result.late_plans}};
   return JsonText(json);
 }
 

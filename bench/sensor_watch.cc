@@ -1,26 +1,25 @@
 #include "sidestep/bench/sensor_watch.h"
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace sidestep::bench {
 
 EpisodeTime SensorWatch::NextDue() const {
-  const EpisodeTime due = sensor_.NextDue();
+  const EpisodeTime due = sensor_->NextDue();
   return ask_again_ ? std::max(due, *ask_again_) : due;
 }
 
 std::optional<Scan> SensorWatch::Read(EpisodeTime now) {
   constexpr HorizonOffset kAskAgain(1e-3);
-  std::optional<Scan> scan = sensor_.Read();
-  if (!scan) {
-    if (sensor_.NextDue() <= now) ask_again_ = now + kAskAgain;
-    return scan;
-  }
-  if (newest_ && scan->t <= *newest_) {
-    throw std::runtime_error("the sensor's scans do not come in the order of their capture");
+  std::optional<Scan> scan = sensor_->Read(now);
+  const bool is_new = scan && (!newest_ || scan->t > *newest_);
+  if (!is_new) {
+    if (scan) ++num_left_out_;
+    if (sensor_->NextDue() <= now) ask_again_ = now + kAskAgain;
+    return std::nullopt;
   }
   newest_ = scan->t;
+  scan->sensor = name_;
   return scan;
 }
 

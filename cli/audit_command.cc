@@ -108,13 +108,14 @@ int Audit(const AuditOptions& options) {
 
   bench::FieldAudit audit(problem.scenario, options.ahead_s, options.num_points);
   int num_cycles = 0;
+  bench::EpisodeOptions episode;
+  episode.observe_field = [&](EpisodeTime t, const std::shared_ptr<const sdf::DistanceField>& field,
+                              const robot::WorldTruth* truth) {
+    audit.Look(t, *field, *truth);
+    ++num_cycles;
+  };
   const bench::EpisodeResult result =
-      bench::RunEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths),
-                        [&](EpisodeTime t, const std::shared_ptr<const sdf::DistanceField>& field,
-                            const robot::WorldTruth* truth) {
-                          audit.Look(t, *field, *truth);
-                          ++num_cycles;
-                        });
+      bench::RunEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths), episode);
   bench::RequireWhole(result);
   if (num_cycles == 0) {
     PrintError("audit: the episode had no planning cycle: {}\n", result.reason);

@@ -47,13 +47,17 @@ struct Belief {
 Belief Watch(const Scene& scene, const FieldOptions& options) {
   const auto model = sdf::MakeWorldModel(
       bench::MakeWorldModelOptions(scene.scenario, options.reach_m, scene.world));
-  bench::SensorWatch sensor(*scene.world.sensor);
+  bench::SensorWatch sensor(scene.world.sensors.front());
+  bool has_seen = false;
   while (sensor.NextDue().seconds() <= options.time_s) {
     const EpisodeTime now = sensor.NextDue();
     scene.world.robot->AdvanceTo(now);
-    if (const std::optional<Scan> scan = sensor.Read(now)) model->Observe(*scan);
+    if (const std::optional<Scan> scan = sensor.Read(now)) {
+      model->Observe(*scan);
+      has_seen = true;
+    }
   }
-  if (!sensor.has_seen()) throw InputError("--time", "the sensor has seen nothing until then");
+  if (!has_seen) throw InputError("--time", "the sensor has seen nothing until then");
   return {EpisodeTime(options.time_s), model->MakeField(),
           sdf::ShapeField({}, bench::TrueMotions(scene.scenario))};
 }

@@ -11,9 +11,11 @@
 #include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/provenance.h"
 #include "sidestep/cli/scenario_options.h"
+#include "sidestep/cli/stop_signals.h"
 #include "sidestep/cli/versions.h"
 #include "sidestep/cli/wiring.h"
 #include "sidestep/core/atomic_file.h"
+#include "sidestep/core/input_error.h"
 #include "sidestep/core/number_text.h"
 #include "sidestep/record/recording_file.h"
 
@@ -22,11 +24,37 @@ namespace {
 
 struct RunOptions {
   ScenarioOptions scenario;
+  std::string clock = "virtual";
   std::string out;
   bool json = false;
 };
 
-void PrintSummary(const bench::EpisodeResult& result, double dwell_s, const std::string& out) {
+// What planning took beside what it was charged.
+void PrintPlanningTime(const bench::EpisodeResult& result, const scenarios::Scenario& scenario) {
+  const std::vector<double>& cycle_s = result.times.at("cycle");
+  if (cycle_s.empty()) {
+    Print("planning cycle   - (there was none)\n");
+    return;
+  }
+  Print("planning cycle   {:.1f} ms CPU (median of {}), ", 1e3 * bench::Quantile(cycle_s, 0.5),
+        cycle_s.size());
+  switch (scenario.latency) {
+    case scenarios::Latency::kCharged:
+      Print("charged {:.1f} ms; {} took longer\n", 1e3 * scenario.latency_s,
+            result.cycles_over_charge);
+      break;
+    case scenarios::Latency::kMeasured:
+      Print("charged as measured: no two such runs are alike\n");
+      break;
+    case scenarios::Latency::kNone:
+      Print("charged nothing\n");
+      break;
+  }
+  if (result.late_plans > 0) Print("late plans       {}, dropped\n", result.late_plans);
+}
+
+void PrintSummary(const bench::EpisodeResult& result, const scenarios::Scenario& scenario,
+                  const std::string& out) {
   const auto& metrics = result.recording.metrics;
   const auto number = [&](const char* name, double scale, const char* format) {
     return FiniteText(format, scale * metrics.at(name));
@@ -36,8 +64,8 @@ void PrintSummary(const bench::EpisodeResult& result, double dwell_s, const std:
   Print("first contact    {}\n", number("first_contact_s", 1, "{:.3f} s"));
   Print("least clearance  {}\n", number("min_clearance_m", 1e3, "{:.1f} mm"));
   Print("time to goal     {}\n", number("time_to_goal_s", 1, "{:.3f} s"));
-  if (dwell_s > 0) {
-    Print("dwell of {:<7}  {}\n", fmt::format("{:g} s", dwell_s),
+  if (scenario.dwell_s > 0) {
+    Print("dwell of {:<7}  {}\n", fmt::format("{:g} s", scenario.dwell_s),
           number("time_to_dwell_s", 1, "over at {:.3f} s"));
   }
   Print("GP cost          {}\n", number("gp_cost", 1, "{:.2f}"));
@@ -46,13 +74,7 @@ void PrintSummary(const bench::EpisodeResult& result, double dwell_s, const std:
     Print("outside the map  {} places of planned motion: nothing is seen there\n",
           metrics.at("samples_outside_grid"));
   }
-  const std::vector<double>& cycle_s = result.times.at("cycle");
-  if (cycle_s.empty()) {
-    Print("planning cycle   - (there was none)\n");
-  } else {
-    Print("planning cycle   {:.1f} ms CPU (median of {})\n", 1e3 * bench::Quantile(cycle_s, 0.5),
-          cycle_s.size());
-  }
+  PrintPlanningTime(result, scenario);
   Print("written          {}/result.json, {}/trace.h5\n", out, out);
 }
 
@@ -64,8 +86,16 @@ int Run(const RunOptions& options) {
       options.out.empty() ? "out/" + problem.scenario.name + "/" + problem.scenario.knowledge
                           : options.out,
       {"trace.h5", "result.json"});
+  const StopSignals signals;
+  const bench::EpisodeOptions episode = {.observe_field = {},
+                                         .is_stopped = [&] { return signals.count() > 0; },
+                                         .wall_clock = options.clock == "wall"};
+  if (episode.wall_clock && problem.scenario.latency == scenarios::Latency::kNone) {
+    throw InputError("--clock",
+                     "on a wall clock planning takes time: --latency charged or measured");
+  }
   bench::EpisodeResult result =
-      bench::RunEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths));
+      bench::RunEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths), episode);
   const bench::RunIdentity identity = Identify(problem.scenario, paths);
   AddProvenance(identity, result.recording);
   record::WriteRecording(result.recording, out + "/trace.h5");
@@ -74,7 +104,7 @@ int Run(const RunOptions& options) {
   if (options.json) {
     PrintText(json);
   } else {
-    PrintSummary(result, problem.scenario.dwell_s, out);
+    PrintSummary(result, problem.scenario, out);
   }
   bench::RequireWhole(result);  // what there is has been written
   return 0;
@@ -91,6 +121,17 @@ void AddRunCommand(CommandLine& line) {
   run->add_option("--latency-ms", overrides.latency_ms,
                   "Episode time charged to each planning cycle [ms]")
       ->check(NumberFrom(0.0, 60000.0));
+  run->add_option(
+         "--latency", overrides.latency,
+         "What a planning cycle takes: charged (always the same), measured (the CPU time it "
+         "needs; no two runs are alike), none")
+      ->check(CLI::IsMember({"charged", "measured", "none"}));
+  run->add_option(
+         "--clock", options->clock,
+         "virtual: as fast as it goes, the same bits again; wall: in real time, planning in "
+         "a thread of its own, plans that come late dropped")
+      ->check(CLI::IsMember({"virtual", "wall"}))
+      ->capture_default_str();
   run->add_option("--epsilon", overrides.epsilon_m, "Safety margin of the obstacle cost [m]")
       ->check(NumberFrom(0.0, 10.0));
   run->add_option("--out", options->out, "Folder for the results [out/SCENARIO/KNOWLEDGE]");

@@ -22,6 +22,7 @@ namespace {
 void Override(scenarios::Scenario& scenario, const Overrides& overrides) {
   if (overrides.knowledge) scenario.knowledge = *overrides.knowledge;
   if (overrides.predictor) scenario.predictor = *overrides.predictor;
+  if (overrides.latency) scenario.latency = scenarios::LatencyFromString(*overrides.latency);
   if (overrides.latency_ms) scenario.latency_s = *overrides.latency_ms / 1e3;
   if (overrides.epsilon_m) {
     scenario.epsilon_m = *overrides.epsilon_m;
@@ -50,6 +51,7 @@ void CheckGivenOnce(const Overrides& overrides) {
   } flags[] = {{"--knowledge", "knowledge", overrides.knowledge.has_value()},
                {"--predictor", "predictor", overrides.predictor.has_value()},
                {"--seed", "seed", overrides.seed.has_value()},
+               {"--latency", "replanning.latency", overrides.latency.has_value()},
                {"--latency-ms", "replanning.latency_s", overrides.latency_ms.has_value()},
                {"--epsilon", "planner.epsilon_m", overrides.epsilon_m.has_value()}};
   const auto fail = [](const std::string& path, const std::string& flag) {

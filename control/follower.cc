@@ -25,8 +25,13 @@ Command Follower::Tick(const Measured& measured, HorizonOffset period) noexcept 
     JointPoint target = RestAt(measured.q);
     SampleInto(plan->trajectory, offset, target.q, target.v, target.a);
     command.motion = tracker_.Step(measured.commanded, target, period.seconds());
+    mode_.store(robot::RobotMode::kMoving, std::memory_order_relaxed);
   } else {
     command.motion = tracker_.Brake(measured.commanded, period.seconds());
+    // Once something has begun, only Hold leaves nothing to follow.
+    if (mode() == robot::RobotMode::kMoving) {
+      mode_.store(robot::RobotMode::kHolding, std::memory_order_relaxed);
+    }
   }
   log_.Append({measured.t, measured.q, measured.v, command.motion});
   return command;

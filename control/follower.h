@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 
 #include "sidestep/control/joint_vector.h"
@@ -8,6 +9,7 @@
 #include "sidestep/control/tracker.h"
 #include "sidestep/core/time.h"
 #include "sidestep/core/trajectory.h"
+#include "sidestep/robot/robot_interface.h"
 
 namespace sidestep::control {
 
@@ -52,6 +54,9 @@ class Follower {
   /// Forgets what was submitted: brakes within the limits, and stays until something new begins.
   void Hold() noexcept { plans_.Recall(); }
 
+  /// As of the latest tick; to be asked from any thread.
+  robot::RobotMode mode() const { return mode_.load(std::memory_order_relaxed); }
+
   /// The command for the tick that begins at measured.t and lasts `period`: towards the plan, or to
   /// rest where there is none, within the limits (control/tracker.h).
   Command Tick(const Measured& measured, HorizonOffset period) noexcept;
@@ -67,6 +72,7 @@ class Follower {
  private:
   JerkLimitedTracker tracker_;
   PlanSlot plans_;
+  std::atomic<robot::RobotMode> mode_{robot::RobotMode::kReady};
   RingLog<TickRecord> log_;
 };
 

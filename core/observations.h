@@ -28,7 +28,8 @@ enum class ScanKind {
 
 /// The solid world as a sensor saw it at one moment, as points, named objects or both.
 struct Scan {
-  EpisodeTime t;  ///< when it was captured, not when it arrived
+  EpisodeTime t;       ///< when it was captured, not when it arrived
+  std::string sensor;  ///< its name
   ScanKind kind = ScanKind::kSolid;
   Pose X_WC;                               ///< where the sensor stood
   Eigen::Matrix3Xd p_CP;                   ///< [m] the points, in the sensor's frame

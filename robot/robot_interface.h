@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "sidestep/core/samples.h"
@@ -8,6 +9,20 @@
 
 namespace sidestep::robot {
 
+/// What a robot is about.
+enum class RobotMode {
+  kDisarmed,  ///< follows nothing that it is told
+  kReady,     ///< at rest, and has not been told anything since it was last ready
+  kMoving,    ///< follows a trajectory, or rests at its end
+  kHolding,   ///< brakes, or has come to rest by that
+  kFault      ///< stopped by itself, and stays so until a person recovers it
+};
+
+struct RobotStatus {
+  RobotMode mode = RobotMode::kDisarmed;
+  std::string why;  ///< it holds or has stopped, where nobody told it to; else empty
+};
+
 /// A robot that follows trajectories, simulated or real. One thread at a time.
 class RobotInterface {
  public:
@@ -15,6 +30,8 @@ class RobotInterface {
 
   /// The measured state now.
   virtual JointState Read() const = 0;
+
+  virtual RobotStatus Status() const = 0;
 
   /// Follows `trajectory` from `start` on; until then, what was submitted before goes on, and
   /// before the first one the robot is held. A start in the past is allowed: the robot joins the
@@ -27,6 +44,7 @@ class RobotInterface {
   virtual void Hold() noexcept = 0;
 
   /// The simulator steps to time `t`; hardware waits for it. Never goes back.
+  /// @throws RobotError if the robot has failed.
   virtual void AdvanceTo(EpisodeTime t) = 0;
 
   /// Every control tick since the last call.

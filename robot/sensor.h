@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "sidestep/core/observations.h"
 
@@ -16,9 +17,16 @@ class Sensor {
   /// to read then and the time stays in the past, it is asked again a millisecond later.
   virtual EpisodeTime NextDue() const = 0;
 
-  /// The next scan that has arrived and has not been read before, if there is one; its time is that
-  /// of its capture. Scans come in the order of capture. They never hold the robot.
-  virtual std::optional<Scan> Read() = 0;
+  /// At `now`, which never goes back: the next scan that has arrived and has not been read before,
+  /// if there is one; its time is that of its capture. Scans come in the order of capture. They
+  /// never hold the robot.
+  virtual std::optional<Scan> Read(EpisodeTime now) = 0;
+};
+
+/// One of several.
+struct NamedSensor {
+  std::string name;
+  Sensor* sensor = nullptr;
 };
 
 }  // namespace sidestep::robot

@@ -103,6 +103,14 @@ struct MovingObstacle {
   bool faces_path = false;
 };
 
+/// What a planning cycle takes of the episode's time.
+enum class Latency {
+  kCharged,   ///< always the same
+  kMeasured,  ///< the CPU time that it needs: no two runs are alike
+  kNone       ///< nothing
+};
+inline constexpr const char* kLatencyWords[] = {"charged", "measured", "none"};  ///< in that order
+
 /// How the planner knows what never moves.
 enum class StaticWorld {
   kOccupancy,  ///< as the sensor sees it: by cells
@@ -147,7 +155,9 @@ struct Scenario {
   /// where they are predicted to be, but by no more than the limit.
   double growth_sigmas = 0, growth_limit_m = 0;
   double replan_rate_hz = 0;
-  double latency_s = 0;  ///< charged to each planning cycle
+  Latency latency = Latency::kCharged;
+  double latency_s = 0;  ///< charged to each planning cycle; measured: the most it may take
+  double longest_latency_s() const { return latency == Latency::kNone ? 0 : latency_s; }
 
   SensorSettings sensor;
   std::uint64_t seed = 1;
@@ -161,6 +171,10 @@ struct Scenario {
   /// can judge (names of robots, configurations, ...) as the reader does; 0 of what a setting gave.
   std::map<std::string, int> lines;
 };
+
+/// @throws std::invalid_argument for another word than those of kLatencyWords.
+Latency LatencyFromString(const std::string& word);
+std::string ToString(Latency latency);
 
 /// What to throw where the value of `key` (a path in the file) is wrong: `FILE:LINE: KEY: WHY`, or
 /// `--set KEY: WHY` where a person set it, or a part of it.

@@ -391,6 +391,10 @@ void ReadReplanning(const YamlReader& top, Scenario& scenario) {
     throw WrongValue(scenario, "replanning.latency_s", "must not exceed the horizon",
                      {"horizon.duration_s"});
   }
+  if (map.Has("latency")) {
+    const std::vector<std::string> words(std::begin(kLatencyWords), std::end(kLatencyWords));
+    scenario.latency = LatencyFromString(map.GetChoice("latency", words));
+  }
   map.CheckNoUnknownKeys();
 }
 

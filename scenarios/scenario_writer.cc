@@ -137,10 +137,20 @@ std::string PlannerText(const Scenario& scenario) {
   line("velocity_limits", Word(scenario.velocity_limits));
   line("acceleration_limits", Word(scenario.acceleration_limits));
   return text + "replanning: {rate_hz: " + Number(scenario.replan_rate_hz) +
-         ", latency_s: " + Number(scenario.latency_s) + "}\n";
+         ", latency: " + ToString(scenario.latency) + ", latency_s: " + Number(scenario.latency_s) +
+         "}\n";
 }
 
 }  // namespace
+
+std::string ToString(Latency latency) { return kLatencyWords[static_cast<int>(latency)]; }
+
+Latency LatencyFromString(const std::string& word) {
+  for (const Latency latency : {Latency::kCharged, Latency::kMeasured, Latency::kNone}) {
+    if (ToString(latency) == word) return latency;
+  }
+  throw std::invalid_argument("no latency is '" + word + "'");
+}
 
 std::string ToYaml(const Scenario& scenario) {
   const GridSpec& grid = scenario.grid;

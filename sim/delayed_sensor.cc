@@ -22,8 +22,8 @@ EpisodeTime DelayedSensor::NextDue() const {
   return std::min(capture, World::TimeOf(on_their_way_.front().arrival_tick));
 }
 
-std::optional<Scan> DelayedSensor::Read() {
-  if (std::optional<Scan> scan = sensor_->Read()) {
+std::optional<Scan> DelayedSensor::Read(EpisodeTime now) {
+  if (std::optional<Scan> scan = sensor_->Read(now)) {
     const double delay_s = latency_s_ + jitter_s_ * jitter_random_.Uniform();
     if (dropout_random_.Uniform() >= dropout_) {
       const std::int64_t tick = World::TickNotBefore(scan->t + HorizonOffset(delay_s));

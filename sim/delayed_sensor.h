@@ -22,7 +22,7 @@ class DelayedSensor final : public robot::Sensor {
                 const World& world, std::uint64_t seed);
 
   EpisodeTime NextDue() const override;
-  std::optional<Scan> Read() override;
+  std::optional<Scan> Read(EpisodeTime now) override;
 
  private:
   struct OnItsWay {

@@ -44,7 +44,7 @@ DepthCamera::DepthCamera(const World& world, const scenarios::CameraSettings& se
   }
 }
 
-std::optional<Scan> DepthCamera::Read() {
+std::optional<Scan> DepthCamera::Read(EpisodeTime) {
   if (!clock_.Take(world_.ticks())) return std::nullopt;
   std::vector<Eigen::Vector3d> hits, free_ends;
   for (const Eigen::Vector3d& ray_C : rays_C_) {

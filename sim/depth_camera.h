@@ -28,7 +28,7 @@ class DepthCamera final : public robot::Sensor {
               std::uint64_t seed);
 
   EpisodeTime NextDue() const override { return clock_.Next(); }
-  std::optional<Scan> Read() override;
+  std::optional<Scan> Read(EpisodeTime now) override;
 
  private:
   const World& world_;

@@ -14,6 +14,7 @@ class NoRobot final : public robot::RobotInterface {
   explicit NoRobot(World* world) : world_(*world) {}
 
   JointState Read() const override { return {world_.time(), world_.q(), world_.v()}; }
+  robot::RobotStatus Status() const override { return {robot::RobotMode::kReady, ""}; }
   /// @throws std::invalid_argument always.
   void Submit(const Trajectory& trajectory, EpisodeTime start) override;
   void Hold() noexcept override {}

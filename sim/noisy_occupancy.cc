@@ -26,8 +26,8 @@ NoisyOccupancy::NoisyOccupancy(std::unique_ptr<robot::Sensor> sensor, const Grid
       position_(seed, "occupancy position"),
       false_filled_(seed, "occupancy false_filled") {}
 
-std::optional<Scan> NoisyOccupancy::Read() {
-  std::optional<Scan> scan = sensor_->Read();
+std::optional<Scan> NoisyOccupancy::Read(EpisodeTime now) {
+  std::optional<Scan> scan = sensor_->Read(now);
   if (!scan) return scan;
   OccupancyGrid filled(grid_);
   std::vector<Eigen::Vector3d> points;

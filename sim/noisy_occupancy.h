@@ -21,7 +21,7 @@ class NoisyOccupancy final : public robot::Sensor {
                  const scenarios::OccupancyNoise& noise, std::uint64_t seed);
 
   EpisodeTime NextDue() const override { return sensor_->NextDue(); }
-  std::optional<Scan> Read() override;
+  std::optional<Scan> Read(EpisodeTime now) override;
 
  private:
   std::unique_ptr<robot::Sensor> sensor_;

@@ -32,7 +32,7 @@ OccupancySensor::OccupancySensor(const World& world, const GridSpec& spec, doubl
   }
 }
 
-std::optional<Scan> OccupancySensor::Read() {
+std::optional<Scan> OccupancySensor::Read(EpisodeTime) {
   if (!clock_.Take(world_.ticks())) return std::nullopt;
 
   std::vector<std::size_t> cells;

@@ -26,7 +26,7 @@ class OccupancySensor final : public robot::Sensor {
   OccupancySensor(const World& world, const GridSpec& spec, double rate_hz, CellRule rule);
 
   EpisodeTime NextDue() const override { return clock_.Next(); }
-  std::optional<Scan> Read() override;
+  std::optional<Scan> Read(EpisodeTime now) override;
 
  private:
   const World& world_;

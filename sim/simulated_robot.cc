@@ -33,6 +33,8 @@ SimulatedRobot::SimulatedRobot(const robot::RobotModel& robot, World* world,
 
 JointState SimulatedRobot::Read() const { return {world_.time(), world_.q(), world_.v()}; }
 
+robot::RobotStatus SimulatedRobot::Status() const { return {follower_.mode(), ""}; }
+
 void SimulatedRobot::Submit(const Trajectory& trajectory, EpisodeTime start) {
   follower_.Submit(trajectory, start);
 }

@@ -28,6 +28,7 @@ class SimulatedRobot final : public robot::RobotInterface {
                  double v_scale = 1);
 
   JointState Read() const override;
+  robot::RobotStatus Status() const override;
   void Submit(const Trajectory& trajectory, EpisodeTime start) override;
   void Hold() noexcept override;
   /// Steps to the first tick that is not before `t`.

@@ -57,6 +57,7 @@ Simulation::Simulation(const scenarios::Scenario& scenario, const robot::RobotMo
       truth_(world_),
       robot_(std::make_unique<SimulatedRobot>(
           robot, &world_, [this] { truth_.Observe(); }, scenario.velocity_limits ? 1 : kUnlimited)),
+      sensor_name_(scenario.sensor.name),
       sensor_(MakeSensor(scenario, world_)) {}
 
 Simulation::Simulation(const scenarios::Scenario& scenario, const std::string& models_dir)
@@ -66,6 +67,7 @@ Simulation::Simulation(const scenarios::Scenario& scenario, const std::string& m
              Eigen::VectorXd()),
       truth_(world_),
       robot_(std::make_unique<NoRobot>(&world_)),
+      sensor_name_(scenario.sensor.name),
       sensor_(MakeSensor(scenario, world_)) {}
 
 }  // namespace sidestep::sim

@@ -32,6 +32,7 @@ class Simulation {
 
   robot::RobotInterface& robot() { return *robot_; }
   robot::Sensor& sensor() { return *sensor_; }
+  std::vector<robot::NamedSensor> sensors() { return {{sensor_name_, sensor_.get()}}; }
   robot::WorldTruth& truth() { return truth_; }
   const World& world() const { return world_; }
 
@@ -45,6 +46,7 @@ class Simulation {
   World world_;
   SimulatedTruth truth_;
   std::unique_ptr<robot::RobotInterface> robot_;
+  std::string sensor_name_;
   std::unique_ptr<robot::Sensor> sensor_;
 };
 

@@ -80,7 +80,7 @@ ObjectObservation TagCamera::Measure(const scenarios::MovingObstacle& obstacle, 
   return observation;
 }
 
-std::optional<Scan> TagCamera::Read() {
+std::optional<Scan> TagCamera::Read(EpisodeTime) {
   if (!clock_.Take(world_.ticks())) return std::nullopt;
   Scan scan;
   scan.t = world_.time();

@@ -28,7 +28,7 @@ class TagCamera final : public robot::Sensor {
             double rate_hz, CellRule rule, std::uint64_t seed);
 
   EpisodeTime NextDue() const override { return clock_.Next(); }
-  std::optional<Scan> Read() override;
+  std::optional<Scan> Read(EpisodeTime now) override;
 
  private:
   bool Sees(const scenarios::MovingObstacle& obstacle, const Pose& X_WO) const;

@@ -13,8 +13,8 @@ class BlinkingSensor final : public robot::Sensor {
 
   EpisodeTime NextDue() const override { return sensor_->NextDue(); }
 
-  std::optional<Scan> Read() override {
-    std::optional<Scan> scan = sensor_->Read();
+  std::optional<Scan> Read(EpisodeTime now) override {
+    std::optional<Scan> scan = sensor_->Read(now);
     const bool is_shut = scan && std::fmod(scan->t.seconds(), 2) >= 1;
     return is_shut ? std::nullopt : scan;
   }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -149,13 +150,14 @@ TEST_F(Episode, GivesFieldsThatOutliveTheirWorldAndSayTheSameAfterwards) {
       scenario.knowledge = ToString(knowledge);
       KinematicWorld world;
       sdf::DistanceSamples samples;
-      RunEpisode(scenario, arm_, world.Factory(),
-                 [&](EpisodeTime, std::shared_ptr<const sdf::DistanceField> field,
-                     const robot::WorldTruth*) {
-                   field->SampleMany(p_WQ, EpisodeTime(0.7), samples);
-                   said_m.push_back(samples.distance_m);
-                   fields.push_back(std::move(field));
-                 });
+      EpisodeOptions options;
+      options.observe_field = [&](EpisodeTime, std::shared_ptr<const sdf::DistanceField> field,
+                                  const robot::WorldTruth*) {
+        field->SampleMany(p_WQ, EpisodeTime(0.7), samples);
+        said_m.push_back(samples.distance_m);
+        fields.push_back(std::move(field));
+      };
+      RunEpisode(scenario, arm_, world.Factory(), options);
     }
     ASSERT_FALSE(fields.empty());
     sdf::DistanceSamples samples;
@@ -203,6 +205,91 @@ TEST_F(Episode, GoesOnWithWhatItKnowsWhenAnOverdueSensorHasNothingMoreToGive) {
   EXPECT_NEAR(world_.empty_reads, 1000 * silent_s, 5);
 }
 
+TEST_F(Episode, ThatIsStoppedFromOutsideBrakesAndKeepsWhatHappened) {
+  EpisodeOptions options;
+  int cycles = 0;
+  options.observe_field = [&](EpisodeTime, const auto&, const robot::WorldTruth*) { ++cycles; };
+  options.is_stopped = [&] { return cycles == 8; };
+  const EpisodeResult result = RunEpisode(scenario_, arm_, world_.Factory(), options);
+  EXPECT_EQ(result.outcome, Outcome::kAborted);
+  EXPECT_EQ(result.reason, "it was stopped from outside");
+  EXPECT_TRUE(world_.holds);
+  EXPECT_GE(result.recording.control.back().t.seconds(), 0.7);
+  EXPECT_EQ(result.recording.cycles.size(), 8u);
+}
+
+TEST_F(Episode, WithoutLatencyGivesThePlanToTheRobotAtOnce) {
+  scenario_.latency = scenarios::Latency::kNone;
+  const EpisodeResult result = Run();
+  EXPECT_EQ(result.outcome, Outcome::kGoal);
+  ASSERT_FALSE(world_.submissions.empty());
+  EXPECT_EQ(world_.submissions.front().when, result.recording.cycles.front().t);
+  for (const CycleRecord& cycle : result.recording.cycles) EXPECT_EQ(cycle.t_effect, cycle.t);
+}
+
+// This little arm's cycles take a millisecond or so.
+TEST_F(Episode, WithMeasuredLatencyPlansTakeEffectWhenTheTimeTheyNeedHasPassed) {
+  scenario_.latency = scenarios::Latency::kMeasured;
+  const EpisodeResult result = Run();
+  EXPECT_EQ(result.outcome, Outcome::kGoal);
+  const std::vector<CycleRecord>& cycles = result.recording.cycles;
+  ASSERT_GT(cycles.size(), 10u);
+  EXPECT_EQ(cycles[0].t_effect.seconds(), cycles[0].t.seconds() + scenario_.latency_s);
+  int late = 0;
+  for (std::size_t i = 0; i < cycles.size(); ++i) {
+    const double latency_s = (cycles[i].t_effect - cycles[i].t).seconds();
+    EXPECT_GE(latency_s, 1e-3 - 1e-9);
+    EXPECT_LE(latency_s, scenario_.latency_s + 1e-9);
+    if (cycles[i].status == "late") {
+      ++late;
+      EXPECT_GT(result.times.at("cycle")[i], latency_s);
+      EXPECT_FALSE(cycles[i].accepted);
+    }
+  }
+  EXPECT_EQ(result.late_plans, late);
+}
+
+TEST_F(Episode, CountsTheCyclesThatNeededMoreThanTheyWereCharged) {
+  scenario_.latency_s = 1e-7;
+  const EpisodeResult result = Run();
+  EXPECT_EQ(result.cycles_over_charge, static_cast<int>(result.recording.cycles.size()));
+  scenario_.latency_s = 0.1;
+  int longer = 0;
+  const EpisodeResult charged = Run();
+  for (const double cycle_s : charged.times.at("cycle")) longer += cycle_s > 0.1 ? 1 : 0;
+  EXPECT_EQ(charged.cycles_over_charge, longer);
+}
+
+// In real time, so what it does depends on the machine; what holds on every one is asked.
+TEST_F(Episode, OnAWallClockTakesAsLongAsItLastsAndDropsPlansThatComeLate) {
+  scenario_.latency_s = 1e-6;  // no plan can be there by then
+  EpisodeOptions options;
+  options.wall_clock = true;
+  options.is_stopped = [begin = std::chrono::steady_clock::now()] {
+    return std::chrono::steady_clock::now() - begin > std::chrono::milliseconds(600);
+  };
+  const EpisodeResult result = RunEpisode(scenario_, arm_, world_.Factory(), options);
+  EXPECT_GE(result.wall_s, result.recording.control.back().t.seconds() - 0.02);
+  EXPECT_GT(result.late_plans, 0);
+  EXPECT_TRUE(world_.submissions.empty());
+  for (const CycleRecord& cycle : result.recording.cycles) {
+    EXPECT_FALSE(cycle.status == "late" && cycle.accepted);
+  }
+}
+
+TEST_F(Episode, OnAWallClockReachesTheGoal) {
+  EpisodeOptions options;
+  options.wall_clock = true;
+  const EpisodeResult result = RunEpisode(scenario_, arm_, world_.Factory(), options);
+  EXPECT_NE(result.outcome, Outcome::kAborted) << result.reason;
+  EXPECT_GE(result.wall_s, result.recording.control.back().t.seconds() - 0.02);
+  for (const KinematicWorld::Submission& submission : world_.submissions) {
+    EXPECT_GE(submission.when, EpisodeTime(0));
+  }
+  EXPECT_EQ(world_.submissions.size(),
+            static_cast<std::size_t>(std::lround(result.recording.metrics.at("plans_accepted"))));
+}
+
 struct Failure {
   const char* who;
   double at_s;
@@ -218,12 +305,13 @@ class EpisodeThatFails : public Episode, public ::testing::WithParamInterface<Fa
     const auto [who, at_s] = GetParam();
     world_.breaks = who;
     world_.breaks_at_s = at_s;
-    return RunEpisode(scenario_, arm_, world_.Factory(),
-                      [&](EpisodeTime t, const auto&, const robot::WorldTruth*) {
-                        if (world_.breaks == "observer" && t.seconds() >= world_.breaks_at_s) {
-                          throw std::runtime_error("the observer broke");
-                        }
-                      });
+    EpisodeOptions options;
+    options.observe_field = [&](EpisodeTime t, const auto&, const robot::WorldTruth*) {
+      if (world_.breaks == "observer" && t.seconds() >= world_.breaks_at_s) {
+        throw std::runtime_error("the observer broke");
+      }
+    };
+    return RunEpisode(scenario_, arm_, world_.Factory(), options);
   }
 };
 

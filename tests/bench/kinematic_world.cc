@@ -10,6 +10,7 @@
 
 #include "sidestep/bench/true_world.h"
 #include "sidestep/core/trajectory.h"
+#include "sidestep/robot/robot_error.h"
 
 namespace sidestep::bench {
 namespace {
@@ -32,6 +33,11 @@ class Robot final : public robot::RobotInterface {
 
   JointState Read() const override { return {now(), q_, v_}; }
 
+  robot::RobotStatus Status() const override {
+    if (world_.holds) return {robot::RobotMode::kHolding, ""};
+    return {trajectory_ ? robot::RobotMode::kMoving : robot::RobotMode::kReady, ""};
+  }
+
   void Submit(const Trajectory& trajectory, EpisodeTime start) override {
     world_.submissions.push_back({now(), start});
     world_.holds = false;
@@ -46,7 +52,9 @@ class Robot final : public robot::RobotInterface {
 
   void AdvanceTo(EpisodeTime t) override {
     while (now().seconds() < t.seconds() - 1e-9) {
-      BreakIfAsked(world_, "robot", now());
+      if (world_.breaks == "robot" && now().seconds() >= world_.breaks_at_s) {
+        throw robot::RobotError("the robot broke", TakeControlLog());
+      }
       Tick();
     }
   }
@@ -92,7 +100,7 @@ class CellSensor final : public robot::Sensor {
                                    : std::numeric_limits<double>::infinity());
   }
 
-  std::optional<Scan> Read() override {
+  std::optional<Scan> Read(EpisodeTime) override {
     const EpisodeTime t = NextDue();
     BreakIfAsked(world_, "sensor", t);
     if (t.seconds() >= world_.falls_silent_at_s) {
@@ -196,7 +204,7 @@ WorldFactory KinematicWorld::Factory() {
     EpisodeWorld world;
     world.owner = stage;
     world.robot = &stage->robot;
-    world.sensor = &stage->sensor;
+    world.sensors = {{"cells", &stage->sensor}};
     if (judges) world.truth = &stage->truth;
     world.joints = model.joint_names();
     for (const scenarios::MovingObstacle& obstacle : scenario.moving_obstacles) {

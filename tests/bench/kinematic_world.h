@@ -14,7 +14,8 @@ struct KinematicWorld {
   bool sees = true;    ///< false: its sensor never captures anything
   bool judges = true;  ///< false: there is no WorldTruth, as on hardware
 
-  /// Who throws, from `breaks_at_s` on: "robot" (in AdvanceTo), "sensor", "truth"; empty: nobody.
+  /// Who throws, from `breaks_at_s` on: "robot" (in AdvanceTo; with its last ticks, which nobody
+  /// has taken), "sensor", "truth"; empty: nobody.
   std::string breaks;
   double breaks_at_s = 0;
 

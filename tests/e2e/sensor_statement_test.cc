@@ -353,7 +353,7 @@ TEST_P(EverySensor, FindsAKnownThingWhereItIsAndNothingElse) {
   int num_seen = 0, num_of_shelf = 0;
   for (int capture = 0; capture < 16; ++capture) {
     simulation.robot().AdvanceTo(simulation.sensor().NextDue());
-    const std::optional<Scan> scan = simulation.sensor().Read();
+    const std::optional<Scan> scan = simulation.sensor().Read(simulation.world().time());
     ASSERT_TRUE(scan.has_value());
     EXPECT_EQ(scan->t, simulation.world().time());
     const Eigen::Vector3d p_WCart = PoseAt(scenario.moving_obstacles[0], scan->t).translation();

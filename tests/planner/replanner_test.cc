@@ -19,13 +19,21 @@ namespace {
 
 const Eigen::Vector2d kStart(-1.1, 0.3), kGoal(1.2, -0.2);
 
+CycleResult RunAndAccept(Replanner& replanner, MovingBallWorld& world, const JointState& state,
+                         double latency_s, const GoalWatch& goal = GoalWatch(kGoal, 0)) {
+  CycleResult cycle = replanner.Work(
+      replanner.Prepare(state.t, state, HorizonOffset(latency_s), goal, world.MakeField()));
+  replanner.Accept(cycle);
+  return cycle;
+}
+
 // A robot that does exactly what it was told, and the loop around a replanner.
 class Loop {
  public:
   explicit Loop(MovingBallWorld& world, const std::string& planner = "gpmp", double dwell_s = 0)
       : world_(world),
         planner_(MakePlanner(planner, arm_, Settings())),
-        replanner_(*planner_, world, {.horizon_s = 3, .step_s = 0.1, .q_goal = kGoal}),
+        replanner_(*planner_, {.horizon_s = 3, .step_s = 0.1, .q_goal = kGoal}),
         goal_(kGoal, dwell_s) {}
 
   static PlannerSettings Settings() {
@@ -41,13 +49,13 @@ class Loop {
   }
 
   // One cycle at `now`; its plan takes effect at once it may. Checks the splice.
-  Replanner::Cycle Cycle(double now_s, double latency_s) {
+  CycleResult Cycle(double now_s, double latency_s) {
     const EpisodeTime now(now_s);
     for (; ticks_ < std::lround(1000 * now_s); ++ticks_) {
       const JointState state = StateAt(EpisodeTime(0.001 * static_cast<double>(ticks_)));
       goal_.Observe(state.t, state.q, state.v);
     }
-    Replanner::Cycle cycle = replanner_.Run(now, StateAt(now), HorizonOffset(latency_s), goal_);
+    CycleResult cycle = RunAndAccept(replanner_, world_, StateAt(now), latency_s, goal_);
     EXPECT_EQ(cycle.plan.has_value(), cycle.record.accepted);
     if (cycle.plan) {
       ExpectContinuousSplice(*cycle.plan, cycle.record.t_effect);
@@ -135,14 +143,14 @@ INSTANTIATE_TEST_SUITE_P(Latencies, ReplannerAtAnyLatency,
 TEST(Replanner, TheDirectMotionWouldHitTheBall) {  // or the tests above show nothing
   MovingBallWorld world = CrossingBall();
   Loop loop(world, "straight_line");
-  const Replanner::Cycle cycle = loop.Cycle(0, 0.1);
+  const CycleResult cycle = loop.Cycle(0, 0.1);
   EXPECT_EQ(cycle.record.status, "in_collision");
 }
 
 TEST(Replanner, RestsUntilTheFirstPlanTakesEffect) {
   MovingBallWorld world = NothingThere();
   Loop loop(world);
-  const Replanner::Cycle cycle = loop.Cycle(0, 0.25);
+  const CycleResult cycle = loop.Cycle(0, 0.25);
   ASSERT_TRUE(cycle.plan);
   EXPECT_EQ(cycle.plan->start, EpisodeTime(0));
   for (int k = 0; k <= 3; ++k) EXPECT_EQ(cycle.plan->trajectory.q.col(k), kStart);
@@ -167,7 +175,7 @@ TEST(Replanner, DoesNothingMoreAtTheGoal) {
   Loop loop(world);
   loop.RunUntil(3.0, 0.1, 0.1);
   for (const double now_s : {3.0, 3.1, 5.0}) {
-    const Replanner::Cycle cycle = loop.Cycle(now_s, 0.1);
+    const CycleResult cycle = loop.Cycle(now_s, 0.1);
     EXPECT_FALSE(cycle.plan);
     EXPECT_EQ(cycle.record.status, "kept");
   }
@@ -194,7 +202,7 @@ TEST(Replanner, WaitsWhileTheGoalIsTakenAndGoesWhenItIsFree) {
   MovingBallWorld world(p_WTip, {0, 0, 0}, 0.1);
   Loop loop(world);
   for (const double now_s : {0.0, 0.1, 0.2}) {
-    const Replanner::Cycle cycle = loop.Cycle(now_s, 0.1);
+    const CycleResult cycle = loop.Cycle(now_s, 0.1);
     EXPECT_FALSE(cycle.plan);
     EXPECT_EQ(cycle.record.status, "in_collision");
   }
@@ -226,7 +234,7 @@ TEST(Replanner, BeginsANewHorizonWhenThePlanIsSpoiltTooLate) {
   const Eigen::Vector3d p_WTip = MakePlanarArm().ComputeSphereCenters(kGoal, false).p_WS.col(5);
   // Reaches the goal together with the arm, and leaves again.
   world.Replace(p_WTip + Eigen::Vector3d(0, 2.97, 0) * 0.6, {0, -0.6, 0}, 0.05);
-  const Replanner::Cycle cycle = loop.Cycle(2.75, 0.1);
+  const CycleResult cycle = loop.Cycle(2.75, 0.1);
   ASSERT_TRUE(cycle.plan);
   EXPECT_EQ(cycle.plan->start, EpisodeTime(2.75) + HorizonOffset(0.1));
   EXPECT_EQ(cycle.plan->trajectory.num_states(), 31);
@@ -238,7 +246,7 @@ TEST(Replanner, BeginsANewHorizonWhereTheRobotIsWhenItIsFarFromItsPlan) {
   loop.RunUntil(1.0, 0.1, 0.1);
   const Eigen::Vector2d elsewhere(-0.9, 0.9);
   loop.Push(elsewhere);
-  const Replanner::Cycle cycle = loop.Cycle(1.0, 0.1);
+  const CycleResult cycle = loop.Cycle(1.0, 0.1);
   ASSERT_TRUE(cycle.plan);
   EXPECT_EQ(cycle.plan->start, EpisodeTime(1.0) + HorizonOffset(0.1));
   EXPECT_EQ(cycle.plan->trajectory.q.col(0), elsewhere);
@@ -259,19 +267,17 @@ TEST_P(ReplannerOffPlan, BeginsWhereTheRobotWillBeWhenTheNewPlanTakesEffect) {
   const Found& found = GetParam();
   MovingBallWorld world = NothingThere();
   const auto planner = MakePlanner("straight_line", MakePlanarArm(), {});
-  Replanner replanner(*planner, world, {.horizon_s = 3, .step_s = 0.1, .q_goal = kGoal});
-  replanner.Run(EpisodeTime(0), {EpisodeTime(0), kStart, Eigen::Vector2d::Zero()},
-                HorizonOffset(0.1), GoalWatch(kGoal, 0));
+  Replanner replanner(*planner, {.horizon_s = 3, .step_s = 0.1, .q_goal = kGoal});
+  RunAndAccept(replanner, world, {EpisodeTime(0), kStart, Eigen::Vector2d::Zero()}, 0.1);
   const EpisodeTime now(1), effect = now + HorizonOffset(0.1);
-  const auto cycle =
-      replanner.Run(now, {now, found.q, found.v}, HorizonOffset(0.1), GoalWatch(kGoal, 0));
+  const CycleResult cycle = RunAndAccept(replanner, world, {now, found.q, found.v}, 0.1);
   ASSERT_TRUE(cycle.plan);
   EXPECT_EQ(cycle.plan->start, effect);
   EXPECT_LT((cycle.plan->trajectory.q.col(0) - found.q_later).norm(), 1e-12);
   EXPECT_LT((cycle.plan->trajectory.v.col(0) - found.v_later).norm(), 1e-12);
   // A robot that did just that follows the new plan, and needs no other one.
-  const auto next = replanner.Run(effect, {effect, found.q_later, found.v_later},
-                                  HorizonOffset(0.1), GoalWatch(kGoal, 0));
+  const CycleResult next =
+      RunAndAccept(replanner, world, {effect, found.q_later, found.v_later}, 0.1);
   EXPECT_EQ(next.record.plan_start, effect);
 }
 
@@ -293,10 +299,9 @@ TEST_P(ReplannerWithoutAPlan, BeginsWhereTheRobotStopsMeanwhile) {
   const Found& found = GetParam();
   MovingBallWorld world = NothingThere();
   const auto planner = MakePlanner("straight_line", MakePlanarArm(), {});
-  Replanner replanner(*planner, world, {.horizon_s = 3, .step_s = 0.1, .q_goal = kGoal});
+  Replanner replanner(*planner, {.horizon_s = 3, .step_s = 0.1, .q_goal = kGoal});
   const EpisodeTime now(0);
-  const auto cycle =
-      replanner.Run(now, {now, found.q, found.v}, HorizonOffset(0.1), GoalWatch(kGoal, 0));
+  const CycleResult cycle = RunAndAccept(replanner, world, {now, found.q, found.v}, 0.1);
   ASSERT_TRUE(cycle.plan);
   const TrajectoryPoint there =
       Sample(cycle.plan->trajectory, EpisodeTime(0.1) - cycle.plan->start);
@@ -362,7 +367,7 @@ TEST(Replanner, DoesNotStayForADwellThatNobodyAsksFor) {
 TEST(Replanner, RecordsWhatItSawAndFound) {
   MovingBallWorld world = CrossingBall();
   Loop loop(world);
-  const Replanner::Cycle cycle = loop.Cycle(0, 0.1);
+  const CycleResult cycle = loop.Cycle(0, 0.1);
   const CycleRecord& record = cycle.record;
   EXPECT_EQ(record.t, EpisodeTime(0));
   EXPECT_EQ(record.t_effect, EpisodeTime(0.1));
@@ -371,10 +376,34 @@ TEST(Replanner, RecordsWhatItSawAndFound) {
   EXPECT_GT(record.cost, 0);
   EXPECT_GT(record.predicted_clearance_m, 0);
   EXPECT_EQ(record.plan.q, cycle.plan->trajectory.q);
-  ASSERT_EQ(record.objects.size(), 1u);
-  ASSERT_EQ(record.objects[0].t.size(), 31u);
-  EXPECT_EQ(record.objects[0].t.front(), EpisodeTime(0));
-  EXPECT_NEAR(record.objects[0].t.back().seconds(), 3, 1e-9);
+  const std::vector<EpisodeTime> times = TimesToDescribe(record);
+  ASSERT_EQ(times.size(), 31u);
+  EXPECT_EQ(times.front(), EpisodeTime(0));
+  EXPECT_NEAR(times.back().seconds(), 3, 1e-9);
+}
+
+// A plan that came too late is not given to the robot: the replanner goes on from what runs.
+TEST(Replanner, GoesOnFromWhatRunsWhenAResultIsNotAccepted) {
+  MovingBallWorld world = CrossingBall();
+  const auto planner = MakePlanner("gpmp", MakePlanarArm(), Loop::Settings());
+  const ReplannerOptions options = {.horizon_s = 3, .step_s = 0.1, .q_goal = kGoal};
+  Replanner never_late(*planner, options), late_once(*planner, options);
+  const JointState start = {EpisodeTime(0), kStart, Eigen::Vector2d::Zero()};
+  const TimedPlan first = *RunAndAccept(never_late, world, start, 0.1).plan;
+  RunAndAccept(late_once, world, start, 0.1);
+  const auto state_at = [&](double t_s) {
+    const TrajectoryPoint point = Sample(first.trajectory, EpisodeTime(t_s) - first.start);
+    return JointState{EpisodeTime(t_s), point.q, point.v};
+  };
+  const GoalWatch goal(kGoal, 0);
+  const CycleTask lost = late_once.Prepare(EpisodeTime(0.5), state_at(0.5), HorizonOffset(0.1),
+                                           goal, world.MakeField());
+  ASSERT_TRUE(late_once.Work(lost).plan);
+  const CycleTask a = never_late.Prepare(EpisodeTime(0.8), state_at(0.8), HorizonOffset(0.1), goal,
+                                         world.MakeField());
+  const CycleTask b = late_once.Prepare(EpisodeTime(0.8), state_at(0.8), HorizonOffset(0.1), goal,
+                                        world.MakeField());
+  EXPECT_EQ(never_late.Work(a).plan->trajectory.q, late_once.Work(b).plan->trajectory.q);
 }
 
 TEST(Replanner, RefusesOptionsOutOfRange) {
@@ -387,7 +416,7 @@ TEST(Replanner, RefusesOptionsOutOfRange) {
                                    {3, 0.1, Eigen::VectorXd::Zero(3)},
                                    {3e-200, 1e-200, kGoal}};
   for (const ReplannerOptions& options : kBad) {
-    EXPECT_THROW(Replanner(*planner, world, options), std::invalid_argument);
+    EXPECT_THROW(Replanner(*planner, options), std::invalid_argument);
   }
 }
 

@@ -37,7 +37,7 @@ TEST_P(OccupancySensorBy, SeesTheCentresOfTheCellsThatAreFilledAtItsTime) {
   Simulation simulation(scenario, TwoLink(scenario), kTestModels);
   for (int k = 0; k < 20; ++k) {
     simulation.robot().AdvanceTo(simulation.sensor().NextDue());
-    const std::optional<Scan> scan = simulation.sensor().Read();
+    const std::optional<Scan> scan = simulation.sensor().Read(simulation.world().time());
     ASSERT_TRUE(scan.has_value());
     // The world as the scenario has it at the scan's time, rasterised from nothing.
     scenarios::Scenario then = scenario;
@@ -65,12 +65,12 @@ TEST(OccupancySensor, CapturesAtItsRateOnTicksOfTheWorld) {
     EXPECT_LT(due.seconds(), k / 30.0 + 1e-3);
     if (k > 0) {
       simulation.robot().AdvanceTo(EpisodeTime(due.seconds() - 0.001));
-      EXPECT_FALSE(simulation.sensor().Read().has_value());
+      EXPECT_FALSE(simulation.sensor().Read(simulation.world().time()).has_value());
     }
     simulation.robot().AdvanceTo(due);
-    EXPECT_EQ(simulation.sensor().Read()->t, due);
+    EXPECT_EQ(simulation.sensor().Read(simulation.world().time())->t, due);
     EXPECT_EQ(simulation.robot().Read().t, due);
-    EXPECT_FALSE(simulation.sensor().Read().has_value());
+    EXPECT_FALSE(simulation.sensor().Read(simulation.world().time()).has_value());
   }
 }
 
@@ -78,8 +78,8 @@ TEST(OccupancySensor, SkipsCapturesThatWereMissed) {
   const scenarios::Scenario scenario = BusyScenario();
   Simulation simulation(scenario, TwoLink(scenario), kTestModels);
   simulation.robot().AdvanceTo(EpisodeTime(0.25));
-  EXPECT_EQ(simulation.sensor().Read()->t, EpisodeTime(0.25));
-  EXPECT_FALSE(simulation.sensor().Read().has_value());
+  EXPECT_EQ(simulation.sensor().Read(simulation.world().time())->t, EpisodeTime(0.25));
+  EXPECT_FALSE(simulation.sensor().Read(simulation.world().time()).has_value());
   EXPECT_EQ(simulation.sensor().NextDue(), EpisodeTime(0.267));  // 8 / 30 s
 }
 

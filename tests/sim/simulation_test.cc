@@ -219,8 +219,8 @@ TEST(Simulation, IsNotInfluencedByAnotherOneBesideIt) {
   for (double t = 0; t < 2; t += 0.0173) {
     simulation.robot().AdvanceTo(EpisodeTime(t));
     other.robot().AdvanceTo(EpisodeTime(t));
-    simulation.sensor().Read();
-    other.sensor().Read();
+    simulation.sensor().Read(simulation.world().time());
+    other.sensor().Read(other.world().time());
   }
   simulation.robot().AdvanceTo(EpisodeTime(2));
   ExpectSameBits(alone, {simulation.robot().TakeControlLog(), simulation.truth().TakeSamples()});

@@ -66,7 +66,7 @@ using Visit = std::function<void(const Scan&)>;
 void WatchScans(Simulation& simulation, double until_s, const Visit& visit) {
   while (simulation.sensor().NextDue().seconds() <= until_s) {
     simulation.robot().AdvanceTo(simulation.sensor().NextDue());
-    if (const auto scan = simulation.sensor().Read()) visit(*scan);
+    if (const auto scan = simulation.sensor().Read(simulation.world().time())) visit(*scan);
   }
 }
 

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sidestep/bench/episode_world.h"
+#include "sidestep/core/grid.h"
+#include "sidestep/core/observations.h"
+#include "sidestep/core/samples.h"
+#include "sidestep/core/time.h"
+#include "sidestep/record/recording.h"
+#include "sidestep/robot/robot_model.h"
+#include "sidestep/scenarios/scenario.h"
+
+namespace sidestep::bench {
+
+/// Writes down an episode as it goes on, so that what has happened is there however it ends.
+class EpisodeRecorder {
+ public:
+  EpisodeRecorder(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
+                  const EpisodeWorld& world);
+
+  void Keep(ControlSample tick) { recording_.control.push_back(std::move(tick)); }
+  void Keep(TruthSample sample) { recording_.truth.push_back(std::move(sample)); }
+  void Keep(CycleRecord cycle) { recording_.cycles.push_back(std::move(cycle)); }
+  void Keep(TrackEvent event) { recording_.events.push_back(std::move(event)); }
+  /// @param occupancy what is filled after the scan, which arrived at `t_arrival`.
+  void Keep(const Scan& scan, EpisodeTime t_arrival, const OccupancyGrid& occupancy);
+
+  const record::Recording& recording() const { return recording_; }
+  /// What there is; nothing is kept after that.
+  record::Recording Take() { return std::move(recording_); }
+
+ private:
+  record::Recording recording_;
+  std::vector<std::uint8_t> last_cells_;  // filled after the latest scan
+};
+
+}  // namespace sidestep::bench
