@@ -5,9 +5,38 @@
 #include <utility>
 
 namespace sidestep::control {
+namespace {
+
+constexpr std::size_t kLogLength = 4096;  // ticks: 4 s
+
+TrackerLimits LimitsUnder(const SafetySettings& safety, const robot::RobotModel& robot,
+                          const TrackerLimits& limits) {
+  if (safety.profile != SafetyProfile::kLab) return limits;
+  TrackerLimits lab = TrackerLimits::Of(robot, safety.v_share, safety.a_share, safety.jerk_share);
+  lab.q_min.array() += safety.range_margin_rad;
+  lab.q_max.array() -= safety.range_margin_rad;
+  return lab;
+}
+
+JointPoint PointOf(const PlanSlot::Plan& plan, EpisodeTime t) {
+  // A start a rounding error after this tick is this tick, not a moment before the motion.
+  const HorizonOffset offset = std::max(t - plan.start, HorizonOffset(0));
+  const Eigen::Index n = plan.trajectory.num_joints();
+  JointPoint point = {JointVector(n), JointVector(n), JointVector(n)};
+  SampleInto(plan.trajectory, offset, point.q, point.v, point.a);
+  return point;
+}
+
+}  // namespace
 
 Follower::Follower(const TrackerLimits& limits, std::size_t log_length)
     : tracker_(limits), log_(log_length) {}
+
+Follower::Follower(const robot::RobotModel& robot, const TrackerLimits& limits,
+                   const SafetySettings& safety)
+    : Follower(LimitsUnder(safety, robot, limits), kLogLength) {
+  if (safety.profile != SafetyProfile::kOff) supervisor_.emplace(robot, tracker_, safety);
+}
 
 void Follower::Submit(Trajectory trajectory, EpisodeTime start) {
   CheckTrajectory(trajectory);
@@ -17,22 +46,55 @@ void Follower::Submit(Trajectory trajectory, EpisodeTime start) {
   plans_.Put(std::move(trajectory), start);
 }
 
-Command Follower::Tick(const Measured& measured, HorizonOffset period) noexcept {
-  Command command;
-  if (const PlanSlot::Plan* const plan = plans_.PlanAt(measured.t)) {
-    // A start a rounding error after this tick is this tick, not a moment before the motion.
-    const HorizonOffset offset = std::max(measured.t - plan->start, HorizonOffset(0));
-    JointPoint target = RestAt(measured.q);
-    SampleInto(plan->trajectory, offset, target.q, target.v, target.a);
-    command.motion = tracker_.Step(measured.commanded, target, period.seconds());
-    mode_.store(robot::RobotMode::kMoving, std::memory_order_relaxed);
-  } else {
-    command.motion = tracker_.Brake(measured.commanded, period.seconds());
-    // Once something has begun, only Hold leaves nothing to follow.
-    if (mode() == robot::RobotMode::kMoving) {
-      mode_.store(robot::RobotMode::kHolding, std::memory_order_relaxed);
+void Follower::Watch(ObstacleReport report) {
+  if (supervisor_) supervisor_->Watch(std::move(report));
+}
+
+void Follower::Rearm() {
+  if (supervisor_) supervisor_->Rearm();
+}
+
+const PlanSlot::Plan* Follower::PlanFor(const Measured& measured, HorizonOffset period) noexcept {
+  const PlanSlot::Plan* const plan = plans_.PlanAt(measured.t);
+  if (plan == nullptr) return nullptr;
+  if (supervisor_ && plan->number > judged_) {
+    judged_ = plan->number;
+    const EpisodeTime before = measured.t - period;
+    if (supervisor_->Refuses(PointOf(*plan, before), before < plan->start, measured)) {
+      dropped_ = plan->number;
     }
   }
+  return plan->number > dropped_ ? plan : nullptr;
+}
+
+Command Follower::Tick(const Measured& measured, HorizonOffset period) noexcept {
+  const double period_s = period.seconds();
+  const PlanSlot::Plan* const plan = PlanFor(measured, period);
+  const auto brake = [&] { return tracker_.Brake(measured.commanded, period_s); };
+  Command command;
+  command.motion = plan == nullptr
+                       ? brake()
+                       : tracker_.Step(measured.commanded, PointOf(*plan, measured.t), period_s);
+
+  Reaction reaction = Reaction::kNone;
+  if (supervisor_) reaction = supervisor_->Judge(measured, command.motion, period_s);
+  if (reaction != Reaction::kNone) {
+    command.motion = brake();
+    // The robot is not where the plan is any more: it goes on by a plan that begins after this.
+    if (plan != nullptr) dropped_ = plan->number;
+  }
+
+  robot::RobotMode mode = this->mode();
+  if (reaction == Reaction::kBrake) {
+    mode = robot::RobotMode::kFault;
+  } else if (reaction == Reaction::kHold) {
+    mode = robot::RobotMode::kHolding;
+  } else if (plan != nullptr) {
+    mode = robot::RobotMode::kMoving;
+  } else if (mode != robot::RobotMode::kReady) {
+    mode = robot::RobotMode::kHolding;  // once something has begun, only a stop leaves nothing
+  }
+  mode_.store(mode, std::memory_order_relaxed);
   log_.Append({measured.t, measured.q, measured.v, command.motion});
   return command;
 }

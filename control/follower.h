@@ -2,47 +2,40 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 
-#include "sidestep/control/joint_vector.h"
 #include "sidestep/control/plan_slot.h"
 #include "sidestep/control/ring_log.h"
+#include "sidestep/control/supervisor.h"
+#include "sidestep/control/tick.h"
 #include "sidestep/control/tracker.h"
+#include "sidestep/core/obstacle_state.h"
 #include "sidestep/core/time.h"
 #include "sidestep/core/trajectory.h"
 #include "sidestep/robot/robot_interface.h"
+#include "sidestep/robot/robot_model.h"
 
 namespace sidestep::control {
 
-/// What a robot's controller tells of itself at one tick.
-struct Measured {
-  EpisodeTime t;
-  JointVector q, v;      ///< as measured, shape n
-  JointPoint commanded;  ///< the motion that it was last told, as it understood it
-};
-
-/// What the motors are told in one tick.
-struct Command {
-  JointPoint motion;
-};
-
-/// One tick, as it is logged: what was measured at its beginning and what was commanded then.
-struct TickRecord {
-  EpisodeTime t;
-  JointVector q, v;
-  JointPoint command;
-};
-
 /// Owns the tick of a robot: what stands between a plan, which comes when it comes, and a motor,
 /// which must be told something every millisecond. The simulated arm and a driver of a real one
-/// call the same Tick.
+/// call the same Tick. Unless its profile is off, a supervisor (control/supervisor.h) looks at
+/// every command before it is sent.
 ///
-/// One thread submits and reads the log, one ticks; they may be the same. Tick takes no lock,
-/// allocates nothing, and never waits.
+/// One thread submits, watches and reads the logs, one ticks; they may be the same. Tick takes no
+/// lock, allocates nothing, and never waits.
 class Follower {
  public:
   /// @param log_length of ticks, kept between two calls of DrainLog.
   /// @throws std::invalid_argument as JerkLimitedTracker.
   explicit Follower(const TrackerLimits& limits, std::size_t log_length = 4096);
+
+  /// Of a robot, under a supervisor if the profile is not off. Under kLab, commands keep to the
+  /// settings' shares of the robot's limits, else to `limits`.
+  /// @throws std::invalid_argument for a robot without capsules that is to be supervised.
+  Follower(const robot::RobotModel& robot, const TrackerLimits& limits,
+           const SafetySettings& safety);
 
   int num_joints() const { return tracker_.num_joints(); }
 
@@ -50,6 +43,12 @@ class Follower {
   /// that is submitted later takes precedence from its start on, for good.
   /// @throws std::invalid_argument for a wrong shape or a value that is not finite.
   void Submit(Trajectory trajectory, EpisodeTime start);
+
+  /// What moves nearby, for the supervisor.
+  void Watch(ObstacleReport report);
+
+  /// After a brake of the supervisor: a person has seen to its cause.
+  void Rearm();
 
   /// Forgets what was submitted: brakes within the limits, and stays until something new begins.
   void Hold() noexcept { plans_.Recall(); }
@@ -66,14 +65,27 @@ class Follower {
   void DrainLog(const Take& take) {
     log_.Drain(take);
   }
+  /// Calls take(SafetyEvent) for what the supervisor has found since the last call.
+  template <class Take>
+  void DrainSafetyEvents(const Take& take) {
+    if (supervisor_) supervisor_->DrainEvents(take);
+  }
   /// Ticks that were not logged because nobody drained the log in time.
   std::size_t lost_ticks() const { return log_.lost(); }
 
  private:
+  // The plan to follow at measured.t, unless it is refused or from before a stop.
+  const PlanSlot::Plan* PlanFor(const Measured& measured, HorizonOffset period) noexcept;
+
   JerkLimitedTracker tracker_;
+  std::optional<Supervisor> supervisor_;
   PlanSlot plans_;
   std::atomic<robot::RobotMode> mode_{robot::RobotMode::kReady};
   RingLog<TickRecord> log_;
+
+  // Of the thread that ticks: numbers of plans.
+  std::uint64_t judged_ = 0;   // by the supervisor, the latest
+  std::uint64_t dropped_ = 0;  // neither that one nor those before it are followed any more
 };
 
 }  // namespace sidestep::control

@@ -27,132 +27,28 @@ double LandingSpeed(double d, double reach, double h) {
   return h * (n * d - reach * n * (n - 1) / 2);
 }
 
-// A stop, followed phase by phase in the direction of the motion: v >= 0 between phases.
-class StopPhases {
- public:
-  StopPhases(const JointMotion& motion, const JointBounds& bounds, double h)
-      : h_(h), a_max_(bounds.a_max), jerk_(bounds.jerk_max), reach_(bounds.jerk_max * h) {
-    q_ = motion.q;
-    v_ = motion.v;
-    a_ = motion.a;
-    summary_ = {q_, q_, q_, std::abs(v_)};
-    if (v_ < 0 || (v_ == 0 && a_ < 0)) Turn();
-  }
-
-  StopSummary Run() {
-    // A deceleration too strong for the speed cannot be taken back in time: the joint swings
-    // through rest, and lands coming the other way.
-    if (-a_ - reach_ > Braking(v_)) EaseOff();
-    if (v_ < 0) Turn();
-    Press();
-    Hold();
-    Land();
-    summary_.q_end = direction_ * q_;
-    return summary_;
-  }
-
- private:
-  void Turn() {
-    direction_ = -direction_;
-    q_ = -q_;
-    v_ = -v_;
-    a_ = -a_;
-  }
-
-  double Braking(double v) const { return std::min(a_max_, LandingDeceleration(v, jerk_, h_)); }
-
-  // The speed after k ticks whose accelerations are a + s, a + 2 s, ...
-  double SpeedAfter(double k, double s) const { return v_ + h_ * (k * a_ + s * k * (k + 1) / 2); }
-
-  void Ramp(double k, double s) {
-    q_ += h_ * (k * v_ + h_ * (a_ * k * (k + 1) / 2 + s * k * (k + 1) * (k + 2) / 6));
-    v_ = SpeedAfter(k, s);
-    a_ += k * s;
-    Note();
-  }
-
-  void Note() {
-    const double q = direction_ * q_;
-    summary_.q_least = std::min(summary_.q_least, q);
-    summary_.q_most = std::max(summary_.q_most, q);
-    summary_.v_most = std::max(summary_.v_most, std::abs(v_));
-  }
-
-  // The first k in [0, last] for which `holds`, which stays true once it is; `last` if none before.
-  template <class Predicate>
-  static double First(double last, const Predicate& holds) {
-    double low = 0, high = last;
-    while (low < high) {
-      const double middle = std::floor((low + high) / 2);
-      if (holds(middle)) {
-        high = middle;
-      } else {
-        low = middle + 1;
-      }
-    }
-    return high;
-  }
-
-  // Less deceleration by a full reach each tick, until it is what the speed asks for, or the joint
-  // has swung through rest.
-  void EaseOff() {
-    const double last = std::ceil(-a_ / reach_);
-    const auto is_over = [&](double k) {
-      const double v = SpeedAfter(k, reach_);
-      return v < 0 || -(a_ + k * reach_) - reach_ <= Braking(v);
-    };
-    const double ticks = First(last, is_over);
-    // The furthest point is reached with the last tick of v >= 0.
-    if (ticks >= 1 && SpeedAfter(ticks, reach_) < 0) {
-      Ramp(ticks - 1, reach_);
-      Ramp(1, reach_);
+// The first k in [0, last] for which `holds`, which stays true once it is; `last` if none before.
+template <class Predicate>
+double First(double last, const Predicate& holds) {
+  double low = 0, high = last;
+  while (low < high) {
+    const double middle = std::floor((low + high) / 2);
+    if (holds(middle)) {
+      high = middle;
     } else {
-      Ramp(ticks, reach_);
+      low = middle + 1;
     }
   }
+  return high;
+}
 
-  // More deceleration by a full reach each tick, until it is what the speed asks for.
-  void Press() {
-    const double last = std::max(0.0, std::ceil((a_ + a_max_) / reach_) + 1);
-    const auto is_over = [&](double k) {
-      const double next = reach_ - (a_ - k * reach_);  // the strongest deceleration of tick k + 1
-      if (next >= a_max_) return true;
-      const double v = SpeedAfter(k, -reach_);
-      return v <= 0 ? next >= 0 : next > 0 && v <= LandingSpeed(next, reach_, h_);
-    };
-    const double ticks = First(last, is_over);
-    // The speed peaks where the acceleration changes its sign.
-    const double rising = std::min(ticks, std::max(0.0, std::ceil(a_ / reach_) - 1));
-    summary_.v_most = std::max(summary_.v_most, SpeedAfter(rising, -reach_));
-    Ramp(ticks, -reach_);
-  }
-
-  // Ticks at the full deceleration, as long as the speed asks for it.
-  void Hold() {
-    if (!(v_ > 0)) return;
-    const double landing = LandingSpeed(a_max_, reach_, h_);
-    if (v_ < landing) return;
-    const double k = std::floor((v_ - landing) / (h_ * a_max_)) + 1;
-    q_ += h_ * (k * v_ - h_ * a_max_ * k * (k + 1) / 2);
-    v_ -= k * h_ * a_max_;
-    a_ = -a_max_;
-    Note();
-  }
-
-  void Land() {
-    if (v_ > 0) {
-      const double n = LandingTicks(v_, jerk_, h_);
-      const double d = (v_ / h_ + reach_ * n * (n - 1) / 2) / n;
-      q_ += h_ * (n * v_ - h_ * (d * n * (n + 1) / 2 - reach_ * (n - 1) * n * (n + 1) / 6));
-      v_ = 0;
-      Note();
-    }
-  }
-
-  double h_, a_max_, jerk_, reach_;
-  double direction_ = 1, q_, v_, a_;
-  StopSummary summary_;
-};
+// Speed and way of k ticks whose accelerations are a + s, a + 2 s, ...
+double SpeedAfter(double v, double a, double s, double k, double h) {
+  return v + h * (k * a + s * k * (k + 1) / 2);
+}
+double WayAfter(double v, double a, double s, double k, double h) {
+  return h * (k * v + h * (a * k * (k + 1) / 2 + s * k * (k + 1) * (k + 2) / 6));
+}
 
 constexpr double kPositionReserve = 1e-9;
 constexpr double kSpeedReserve = 1e-12;  // relative
@@ -166,13 +62,115 @@ double BrakeAcceleration(const JointMotion& motion, const JointBounds& bounds, d
   return std::clamp(std::copysign(deceleration, -motion.v), motion.a - reach, motion.a + reach);
 }
 
-StopSummary SummarizeStop(const JointMotion& motion, const JointBounds& bounds, double period_s) {
-  return StopPhases(motion, bounds, period_s).Run();
+JointStop::JointStop(const JointMotion& motion, const JointBounds& bounds, double period_s)
+    : h_(period_s),
+      a_max_(bounds.a_max),
+      jerk_(bounds.jerk_max),
+      reach_(bounds.jerk_max * period_s),
+      q_(motion.q),
+      v_(motion.v),
+      a_(motion.a),
+      q_end_(q_),
+      q_least_(q_),
+      q_most_(q_),
+      v_most_(std::abs(v_)) {
+  const auto turn = [this] {
+    direction_ = -direction_;
+    q_ = -q_;
+    v_ = -v_;
+    a_ = -a_;
+  };
+  if (v_ < 0 || (v_ == 0 && a_ < 0)) turn();
+  // A deceleration too strong for the speed cannot be taken back in time: the joint swings through
+  // rest, and lands coming the other way.
+  EaseOff();
+  if (v_ < 0) turn();
+  Press();
+  Hold();
+  Land();
+  q_end_ = direction_ * q_;
+}
+
+double JointStop::PositionAfter(double ticks) const {
+  for (int i = 0; i < num_phases_; ++i) {
+    const Phase& phase = phases_[i];
+    if (ticks <= phase.ticks) {
+      return phase.q + WayAfter(phase.v, phase.a, phase.s, ticks, h_);
+    }
+    ticks -= phase.ticks;
+  }
+  return q_end_;
+}
+
+void JointStop::Note(double q, double v) {
+  q_least_ = std::min(q_least_, direction_ * q);
+  q_most_ = std::max(q_most_, direction_ * q);
+  v_most_ = std::max(v_most_, std::abs(v));
+}
+
+void JointStop::Add(double ticks, double a, double s) {
+  if (ticks <= 0) return;
+  phases_[num_phases_++] = {ticks, direction_ * q_, direction_ * v_, direction_ * a,
+                            direction_ * s};
+  ticks_ += ticks;
+  q_ += WayAfter(v_, a, s, ticks, h_);
+  v_ = SpeedAfter(v_, a, s, ticks, h_);
+  a_ = a + ticks * s;
+  Note(q_, v_);
+}
+
+// Less deceleration by a full reach each tick, until it is what the speed asks for, or the joint
+// has swung through rest.
+void JointStop::EaseOff() {
+  const auto asked_for = [&](double v) {
+    return std::min(a_max_, LandingDeceleration(v, jerk_, h_));
+  };
+  if (-a_ - reach_ <= asked_for(v_)) return;
+  const auto is_over = [&](double k) {
+    const double v = SpeedAfter(v_, a_, reach_, k, h_);
+    return v < 0 || -(a_ + k * reach_) - reach_ <= asked_for(v);
+  };
+  const double ticks = First(std::ceil(-a_ / reach_), is_over);
+  // The furthest point is reached with the last tick of v >= 0.
+  const bool swings = ticks >= 1 && SpeedAfter(v_, a_, reach_, ticks, h_) < 0;
+  Add(swings ? ticks - 1 : ticks, a_, reach_);
+  if (swings) Add(1, a_, reach_);
+}
+
+// More deceleration by a full reach each tick, until it is what the speed asks for.
+void JointStop::Press() {
+  const double last = std::max(0.0, std::ceil((a_ + a_max_) / reach_) + 1);
+  const auto is_over = [&](double k) {
+    const double next = reach_ - (a_ - k * reach_);  // the strongest deceleration of tick k + 1
+    if (next >= a_max_) return true;
+    const double v = SpeedAfter(v_, a_, -reach_, k, h_);
+    return v <= 0 ? next >= 0 : next > 0 && v <= LandingSpeed(next, reach_, h_);
+  };
+  const double ticks = First(last, is_over);
+  // The speed peaks where the acceleration changes its sign.
+  const double rising = std::min(ticks, std::max(0.0, std::ceil(a_ / reach_) - 1));
+  v_most_ = std::max(v_most_, SpeedAfter(v_, a_, -reach_, rising, h_));
+  Add(ticks, a_, -reach_);
+}
+
+// Ticks at the full deceleration, as long as the speed asks for it.
+void JointStop::Hold() {
+  const double landing = LandingSpeed(a_max_, reach_, h_);
+  if (!(v_ > 0) || v_ < landing) return;
+  Add(std::floor((v_ - landing) / (h_ * a_max_)) + 1, -a_max_, 0);
+}
+
+void JointStop::Land() {
+  if (!(v_ > 0)) return;
+  const double ticks = LandingTicks(v_, jerk_, h_);
+  const double d = (v_ / h_ + reach_ * ticks * (ticks - 1) / 2) / ticks;
+  Add(ticks, -d - reach_, reach_);
 }
 
 bool CanStopWithin(const JointMotion& motion, const JointBounds& bounds, double period_s) {
-  const StopSummary stop = SummarizeStop(motion, bounds, period_s);
-  return stop.q_least >= bounds.q_min && stop.q_most <= bounds.q_max && stop.v_most <= bounds.v_max;
+  const JointStop stop(motion, bounds, period_s);
+  return stop.q_least() >= bounds.q_min && stop.q_most() <= bounds.q_max &&
+         stop.v_most() <= bounds.v_max;
 }
 
 double SafeAcceleration(const JointMotion& motion, double wanted, const JointBounds& bounds,

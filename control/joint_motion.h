@@ -23,14 +23,42 @@ struct JointMotion {
 /// acceleration and jerk limits. It arrives exactly, and at rest it is 0.
 double BrakeAcceleration(const JointMotion& motion, const JointBounds& bounds, double period_s);
 
-/// Where the stop leads that BrakeAcceleration takes tick by tick, in closed form: a few phases of
-/// constant jerk or acceleration, each a whole number of ticks, whatever their number.
-struct StopSummary {
-  double q_end;            ///< where it rests
-  double q_least, q_most;  ///< reached on the way, `motion` itself included
-  double v_most;           ///< the largest speed on the way, `motion` itself included
+/// The stop that BrakeAcceleration takes tick by tick, in closed form: a few phases of constant
+/// jerk or acceleration, each a whole number of ticks.
+class JointStop {
+ public:
+  JointStop(const JointMotion& motion, const JointBounds& bounds, double period_s);
+
+  double ticks() const { return ticks_; }  ///< until it rests
+  /// Where it is after that many ticks, a whole number >= 0.
+  double PositionAfter(double ticks) const;
+
+  double q_end() const { return q_end_; }  ///< where it rests
+  double q_least() const { return q_least_; }
+  double q_most() const { return q_most_; }  ///< of the whole way, its beginning included
+  double v_most() const { return v_most_; }  ///< the largest speed on the way, beginning included
+
+ private:
+  // Ticks whose accelerations are a + s, a + 2 s, ...
+  struct Phase {
+    double ticks, q, v, a, s;
+  };
+  static constexpr int kMaxPhases = 6;
+
+  void Note(double q, double v);
+  void Add(double ticks, double a, double s);
+  void EaseOff();
+  void Press();
+  void Hold();
+  void Land();
+
+  double h_, a_max_, jerk_, reach_;
+  double direction_ = 1;  // of the motion that is being stopped: in it, v_ >= 0 between phases
+  double q_, v_, a_;      // after the phases so far, in that direction
+  Phase phases_[kMaxPhases];
+  int num_phases_ = 0;
+  double ticks_ = 0, q_end_, q_least_, q_most_, v_most_;
 };
-StopSummary SummarizeStop(const JointMotion& motion, const JointBounds& bounds, double period_s);
 
 /// Whether that quickest stop, begun at `motion`, keeps to the position and velocity limits all the
 /// way, `motion` itself included.

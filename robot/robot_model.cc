@@ -56,6 +56,20 @@ CollisionSphere ReadSphere(const YamlReader& map, int num_joints) {
   return sphere;
 }
 
+CollisionCapsule ReadCapsule(const YamlReader& map, int num_joints) {
+  CollisionCapsule capsule;
+  capsule.link = map.GetInt("link");
+  if (capsule.link < -1 || capsule.link >= num_joints) {
+    map.Fail("link", "must be -1 (the base) to " + std::to_string(num_joints - 1) + ", is " +
+                         std::to_string(capsule.link));
+  }
+  capsule.p_LA = map.GetVector3("from_m");
+  capsule.p_LB = map.GetVector3("to_m");
+  capsule.radius_m = map.GetPositive("radius_m");
+  map.CheckNoUnknownKeys();
+  return capsule;
+}
+
 std::map<std::string, Eigen::VectorXd> ReadConfigurations(
     const YamlReader& map, const std::vector<std::string>& joint_names,
     const std::vector<JointLimits>& limits) {
@@ -197,6 +211,15 @@ RobotModel RobotModel::FromFile(const std::string& path, const Pose& X_WB) {
   model.radii_m_.resize(model.num_spheres());
   for (int s = 0; s < model.num_spheres(); ++s) {
     model.radii_m_(s) = model.spheres_[static_cast<std::size_t>(s)].radius_m;
+  }
+
+  if (file.Has("capsules")) {
+    for (const YamlReader& capsule : file.GetMaps("capsules")) {
+      model.capsules_.push_back(ReadCapsule(capsule, n));
+    }
+    if (model.capsules_.size() > kMaxCapsules) {
+      file.Fail("capsules", "must be at most " + std::to_string(kMaxCapsules));
+    }
   }
 
   model.configurations_ =

@@ -33,6 +33,14 @@ struct CollisionSphere {
   double radius_m = 0;
 };
 
+/// A capsule that covers a part of the arm, fixed in the frame after DH row `link`, or in the base
+/// frame B for link -1: the segment from A to B, grown by the radius.
+struct CollisionCapsule {
+  int link = 0;
+  Eigen::Vector3d p_LA = Eigen::Vector3d::Zero(), p_LB = Eigen::Vector3d::Zero();  ///< [m]
+  double radius_m = 0;
+};
+
 /// Two links (0-based DH rows, first < second) that could touch each other.
 struct LinkPair {
   int first = 0, second = 0;
@@ -60,6 +68,8 @@ class RobotModel {
 
   /// What ComputeSphereCenters has room for; longer arms are refused.
   static constexpr int kMaxJoints = 16;
+  /// More are refused.
+  static constexpr std::size_t kMaxCapsules = 32;
 
   const std::string& name() const { return name_; }
   const std::string& file() const { return file_; }  ///< where it was read
@@ -75,6 +85,9 @@ class RobotModel {
   const std::vector<CollisionSphere>& spheres() const { return spheres_; }
   const Eigen::VectorXd& sphere_radii_m() const { return radii_m_; }  ///< shape S
   double largest_sphere_radius_m() const { return radii_m_.maxCoeff(); }
+  /// What covers the whole arm, for safety (planners see the spheres); empty if robot.yaml names
+  /// none.
+  const std::vector<CollisionCapsule>& capsules() const { return capsules_; }
   /// Named joint positions, each within the position limits.
   const std::map<std::string, Eigen::VectorXd>& configurations() const { return configurations_; }
 
@@ -112,6 +125,7 @@ class RobotModel {
   std::vector<double> cos_alpha_, sin_alpha_;  // of dh_: half of all trigonometry
   std::vector<JointLimits> limits_;
   std::vector<CollisionSphere> spheres_;
+  std::vector<CollisionCapsule> capsules_;
   Eigen::VectorXd radii_m_;
   std::map<std::string, Eigen::VectorXd> configurations_;
   std::vector<int> mount_spheres_;

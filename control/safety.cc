@@ -1,0 +1,51 @@
+#include "sidestep/control/safety.h"
+
+namespace sidestep::control {
+
+const char* ToString(SafetyCheck check) {
+  switch (check) {
+    case SafetyCheck::kPerceptionStale:
+      return "perception_stale";
+    case SafetyCheck::kObstacleLost:
+      return "obstacle_lost";
+    case SafetyCheck::kTimeStamps:
+      return "time_stamps";
+    case SafetyCheck::kSplice:
+      return "splice";
+    case SafetyCheck::kLimits:
+      return "limits";
+    case SafetyCheck::kWorkspace:
+      return "workspace";
+    case SafetyCheck::kClearance:
+      return "clearance";
+    case SafetyCheck::kStopPath:
+      return "stop_path";
+    case SafetyCheck::kTracking:
+      return "tracking";
+    case SafetyCheck::kExternalTorque:
+      return "external_torque";
+    case SafetyCheck::kLink:
+      return "link";
+    case SafetyCheck::kRobotMode:
+      return "robot_mode";
+    case SafetyCheck::kObstacleTooFast:
+      return "obstacle_too_fast";
+  }
+  return "";
+}
+
+const char* ToString(Reaction reaction) {
+  switch (reaction) {
+    case Reaction::kNone:
+      return "none";
+    case Reaction::kRefuse:
+      return "refuse";
+    case Reaction::kHold:
+      return "hold";
+    case Reaction::kBrake:
+      return "brake";
+  }
+  return "";
+}
+
+}  // namespace sidestep::control

@@ -1,0 +1,82 @@
+#pragma once
+
+#include "sidestep/control/joint_vector.h"
+#include "sidestep/core/time.h"
+
+namespace sidestep::control {
+
+/// What the supervisor does about what it finds.
+enum class SafetyProfile {
+  kOff,      ///< it does not look
+  kObserve,  ///< it writes down what kLab would have done
+  kLab       ///< it acts
+};
+
+/// What it looks for. Numbers are those of the table in docs/safety.md.
+enum class SafetyCheck {
+  kPerceptionStale = 1,   ///< no scan has been accepted for too long
+  kObstacleLost = 2,      ///< one that was followed has not been seen for too long
+  kTimeStamps = 3,        ///< a report of the future
+  kSplice = 6,            ///< a plan does not begin where the robot is
+  kLimits = 7,            ///< a command beyond the limits
+  kWorkspace = 8,         ///< a capsule is too near the floor
+  kClearance = 9,         ///< an obstacle is too near
+  kStopPath = 10,         ///< the way to rest might meet an obstacle
+  kTracking = 11,         ///< the robot is not where it was told to be
+  kExternalTorque = 12,   ///< something pushes
+  kLink = 13,             ///< packets are lost
+  kRobotMode = 14,        ///< the robot says that it is not fit to move
+  kObstacleTooFast = 20,  ///< an obstacle is faster than was declared
+};
+inline constexpr int kNumSafetyChecks = 21;
+/// "perception_stale", "clearance", ...
+const char* ToString(SafetyCheck check);
+
+enum class Reaction {
+  kNone,
+  kRefuse,  ///< the plan is not followed: the robot brakes until another one begins
+  kHold,    ///< brakes; goes on when the cause has been gone for resume_s and a new plan begins
+  kBrake,   ///< brakes, and stays until a person rearms it
+};
+/// "none", "refuse", "hold", "brake".
+const char* ToString(Reaction reaction);
+
+/// What the supervisor found, when it found it.
+struct SafetyEvent {
+  EpisodeTime t;
+  SafetyCheck check = SafetyCheck::kPerceptionStale;
+  Reaction reaction = Reaction::kNone;
+  double value = 0, limit = 0;  ///< what was measured, and what it may be; units as the check's
+};
+
+/// The bounds. Defaults are common practice; docs/safety.md tells the reason of each.
+struct SafetySettings {
+  SafetyProfile profile = SafetyProfile::kOff;
+
+  // What obstacles are declared to do.
+  double obstacle_speed_m_s = 0.5;
+  double obstacle_acceleration_m_s2 = 2;
+
+  double stale_s = 0.3;           ///< 1, 2: the oldest a report, or an obstacle in it, may be
+  double future_s = 0.01;         ///< 3
+  double splice_q_rad = 0.005;    ///< 6
+  double splice_v_rad_s = 0.05;   ///< 6
+  double splice_a_rad_s2 = 1;     ///< 6
+  double range_margin_rad = 0.1;  ///< 7: kept from position limits
+  double v_share = 0.5;           ///< 7: of the robot's limits, for commands
+  double a_share = 0.5;           ///< 7
+  double jerk_share = 0.1;        ///< 7
+  double floor_m = 0;             ///< 8
+  double floor_margin_m = 0.02;   ///< 8
+  double clearance_m = 0.05;      ///< 9
+  double margin_m = 0.03;         ///< 10: for what is not known exactly
+  double tracking_rad = 0.02;     ///< 11
+  JointVector torque_n_m;         ///< 12: at which the robot would stop by itself; empty: not known
+  double torque_share = 0.5;      ///< 12: of that
+  double torque_s = 0.02;         ///< 12: for so long
+  double success_rate = 0.9;      ///< 13: of the latest 100 packets
+  int lost_in_a_row = 5;          ///< 13
+  double resume_s = 1;
+};
+
+}  // namespace sidestep::control

@@ -1,0 +1,219 @@
+#include "sidestep/control/supervisor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "sidestep/control/joint_motion.h"
+#include "sidestep/control/segment_box.h"
+
+namespace sidestep::control {
+namespace {
+
+constexpr std::size_t kLogLength = 1024;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Differences of sent positions are wrong by some 1e-15 rad, divided by the tick once a difference.
+constexpr double kRounding = 1e-6;
+
+// NaN if anything is.
+double LargestDifference(const JointVector& a, const JointVector& b) {
+  return (a - b).cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
+}
+
+bool IsMoving(const JointPoint& point) { return !point.v.isZero(0) || !point.a.isZero(0); }
+
+// From the capsule to the obstacle, both as they are, when the obstacle's box is moved by
+// `shift_W`.
+double Distance(const ArmCapsules::Placed& capsule, const ObstacleState& obstacle,
+                const Eigen::Vector3d& shift_W) {
+  const Eigen::Vector3d p_W = obstacle.X_WO.translation() + shift_W;
+  const auto in_box = [&](const Eigen::Vector3d& q_W) {
+    return obstacle.X_WO.RotateInverse(q_W - p_W);
+  };
+  return SegmentBoxDistance(in_box(capsule.a), in_box(capsule.b), obstacle.half_extents_m) -
+         capsule.radius_m - obstacle.radius_m;
+}
+
+}  // namespace
+
+Supervisor::Supervisor(const robot::RobotModel& robot, const JerkLimitedTracker& tracker,
+                       const SafetySettings& settings)
+    : robot_(robot), tracker_(tracker), settings_(settings), capsules_(robot), events_(kLogLength) {
+  if (robot.capsules().empty()) {
+    throw std::invalid_argument("Supervisor: the robot has no capsules");
+  }
+}
+
+bool Supervisor::Refuses(const JointPoint& before, bool begins, const Measured& measured) noexcept {
+  const double q_rad = LargestDifference(before.q, measured.commanded.q);
+  const double v_rad_s = LargestDifference(before.v, measured.commanded.v);
+  const double a_rad_s2 = begins ? 0 : LargestDifference(before.a, measured.commanded.a);
+  now_ = measured.t;
+  is_found_[static_cast<std::size_t>(SafetyCheck::kSplice)] = false;  // each plan is told of
+  const Reaction worst = std::exchange(worst_, Reaction::kNone);
+  const auto find = [&](double value, double limit) {
+    if (!(value <= limit)) Find(SafetyCheck::kSplice, Reaction::kRefuse, true, value, limit);
+  };
+  find(q_rad, settings_.splice_q_rad);
+  find(v_rad_s, settings_.splice_v_rad_s);
+  find(a_rad_s2, settings_.splice_a_rad_s2);
+  const bool is_refused = worst_ != Reaction::kNone;
+  worst_ = worst;
+  return is_refused && settings_.profile == SafetyProfile::kLab;
+}
+
+Reaction Supervisor::Judge(const Measured& measured, const JointPoint& next,
+                           double period_s) noexcept {
+  now_ = measured.t;
+  if (!begin_) begin_ = now_;
+  worst_ = Reaction::kNone;
+  const ObstacleReport* const report = reports_.Get();
+  // A robot at rest has nothing to brake: it waits.
+  const Reaction if_near = IsMoving(measured.commanded) ? Reaction::kBrake : Reaction::kHold;
+  JudgePerception(report);
+  JudgeRobot(measured);
+  JudgeCommand(measured, next, period_s);
+  JudgePlaces(report, next, period_s, if_near);
+  pushed_s_ = 0 < pushed_s_ ? pushed_s_ + period_s : pushed_s_;
+  return React();
+}
+
+void Supervisor::Find(SafetyCheck check, Reaction reaction, bool is_found, double value,
+                      double limit) {
+  bool& was_found = is_found_[static_cast<std::size_t>(check)];
+  if (is_found) {
+    worst_ = std::max(worst_, reaction);
+    if (!was_found) events_.Append({now_, check, reaction, value, limit});
+  }
+  was_found = is_found;
+}
+
+void Supervisor::JudgePerception(const ObstacleReport* report) {
+  const double age_s = (now_ - (report == nullptr ? *begin_ : report->t)).seconds();
+  Find(SafetyCheck::kPerceptionStale, Reaction::kHold, age_s > settings_.stale_s, age_s,
+       settings_.stale_s);
+  Find(SafetyCheck::kTimeStamps, Reaction::kHold, age_s < -settings_.future_s, -age_s,
+       settings_.future_s);
+  double oldest_s = 0, fastest_m_s = 0;
+  if (report != nullptr) {
+    for (const ObstacleState& obstacle : report->obstacles) {
+      oldest_s = std::max(oldest_s, (now_ - obstacle.t).seconds());
+      fastest_m_s = std::max(fastest_m_s, obstacle.v_W.norm());
+    }
+  }
+  // What is stale as a whole is told once.
+  Find(SafetyCheck::kObstacleLost, Reaction::kHold,
+       oldest_s > settings_.stale_s && age_s <= settings_.stale_s, oldest_s, settings_.stale_s);
+  Find(SafetyCheck::kObstacleTooFast, Reaction::kBrake, fastest_m_s > settings_.obstacle_speed_m_s,
+       fastest_m_s, settings_.obstacle_speed_m_s);
+}
+
+void Supervisor::JudgeRobot(const Measured& measured) {
+  const double off_rad = LargestDifference(measured.q, measured.commanded.q);
+  Find(SafetyCheck::kTracking, Reaction::kBrake, !(off_rad <= settings_.tracking_rad), off_rad,
+       settings_.tracking_rad);
+  double pushed = 0;
+  const Eigen::Index known = std::min(measured.tau_ext.size(), settings_.torque_n_m.size());
+  for (Eigen::Index j = 0; j < known; ++j) {
+    pushed = std::max(pushed, std::abs(measured.tau_ext(j)) / settings_.torque_n_m(j));
+  }
+  if (!(pushed > settings_.torque_share)) {
+    pushed_s_ = 0;
+  } else if (pushed_s_ == 0) {
+    pushed_s_ = std::numeric_limits<double>::min();  // since this tick
+  }
+  Find(SafetyCheck::kExternalTorque, Reaction::kBrake, pushed_s_ >= settings_.torque_s, pushed,
+       settings_.torque_share);
+  const bool loses = measured.success_rate < settings_.success_rate ||
+                     measured.lost_in_a_row > settings_.lost_in_a_row;
+  Find(SafetyCheck::kLink, Reaction::kHold, loses, measured.success_rate, settings_.success_rate);
+  Find(SafetyCheck::kRobotMode, Reaction::kBrake, !measured.is_fit, 0, 0);
+}
+
+// Independent of how the command was made: by the positions that are sent, as the robot judges
+// them.
+void Supervisor::JudgeCommand(const Measured& measured, const JointPoint& next, double period_s) {
+  double use = 0;
+  for (int j = 0; j < capsules_.num_joints(); ++j) {
+    const robot::JointLimits& limits = robot_.limits()[static_cast<std::size_t>(j)];
+    const double v = (next.q(j) - measured.commanded.q(j)) / period_s;
+    const double a = (v - measured.commanded.v(j)) / period_s;
+    const double jerk = (a - measured.commanded.a(j)) / period_s;
+    use = std::max({use, std::abs(v) / limits.v_max, std::abs(a) / limits.a_max,
+                    std::abs(jerk) / limits.jerk_max,
+                    next.q(j) < limits.q_min || next.q(j) > limits.q_max ? kInfinity : 0});
+  }
+  Find(SafetyCheck::kLimits, Reaction::kBrake, !(use <= 1 + kRounding), use, 1);
+}
+
+void Supervisor::JudgePlaces(const ObstacleReport* report, const JointPoint& next, double period_s,
+                             Reaction if_near) {
+  PlaceStop(next, period_s);
+  double lowest_m = kInfinity, nearest_m = kInfinity, margin_m = kInfinity;
+  for (std::size_t c = 0; c < static_cast<std::size_t>(capsules_.size()); ++c) {
+    if (!placed_[0][c].moves) continue;
+    for (std::size_t k = 0; k <= kStops; ++k) {
+      const ArmCapsules::Placed& at = placed_[k][c];
+      lowest_m = std::min(lowest_m, std::min(at.a.z(), at.b.z()) - at.radius_m);
+      if (report == nullptr) continue;
+      // Between two moments the capsule is no further from one of them than half its way.
+      double half_way_m = 0;
+      for (const std::size_t other : {k - 1, k + 1}) {
+        if (other > kStops) continue;  // of an unsigned k - 1, too
+        const ArmCapsules::Placed& near = placed_[other][c];
+        half_way_m = std::max({half_way_m, (near.a - at.a).norm() / 2, (near.b - at.b).norm() / 2});
+      }
+      for (const ObstacleState& obstacle : report->obstacles) {
+        const double ahead_s = std::max(0.0, (now_ - obstacle.t).seconds() + placed_s_[k]);
+        const double reach_m = settings_.obstacle_acceleration_m_s2 * ahead_s * ahead_s / 2;
+        const double distance_m = Distance(at, obstacle, ahead_s * obstacle.v_W);
+        if (k == 0) nearest_m = std::min(nearest_m, distance_m);
+        margin_m = std::min(margin_m, distance_m - reach_m - half_way_m);
+      }
+    }
+  }
+  const double least_height_m = settings_.floor_m + settings_.floor_margin_m;
+  Find(SafetyCheck::kWorkspace, if_near, lowest_m < least_height_m, lowest_m, least_height_m);
+  Find(SafetyCheck::kClearance, if_near, nearest_m < settings_.clearance_m, nearest_m,
+       settings_.clearance_m);
+  Find(SafetyCheck::kStopPath, if_near, margin_m < settings_.margin_m, margin_m,
+       settings_.margin_m);
+}
+
+void Supervisor::PlaceStop(const JointPoint& next, double period_s) {
+  std::array<std::optional<JointStop>, kMaxJoints> stops;
+  double ticks = 0;
+  for (int j = 0; j < tracker_.num_joints(); ++j) {
+    auto& stop = stops[static_cast<std::size_t>(j)];
+    stop.emplace(JointMotion{next.q(j), next.v(j), next.a(j)}, tracker_.bounds(j), period_s);
+    ticks = std::max(ticks, stop->ticks());
+  }
+  JointVector q = next.q;
+  for (std::size_t k = 0; k <= kStops; ++k) {
+    const double after = std::round(ticks * static_cast<double>(k) / kStops);
+    for (int j = 0; j < tracker_.num_joints(); ++j) {
+      q(j) = stops[static_cast<std::size_t>(j)]->PositionAfter(after);
+    }
+    placed_s_[k] = (1 + after) * period_s;
+    if (ticks == 0 && k > 0) {
+      placed_[k] = placed_[0];
+    } else {
+      capsules_.Place(q, placed_[k]);
+    }
+  }
+}
+
+Reaction Supervisor::React() {
+  if (settings_.profile != SafetyProfile::kLab) return Reaction::kNone;
+  const int rearms = rearms_.load(std::memory_order_relaxed);
+  if (rearms != std::exchange(rearmed_, rearms)) is_braked_ = false;
+  if (worst_ == Reaction::kBrake) is_braked_ = true;
+  if (worst_ == Reaction::kHold) held_until_ = now_ + HorizonOffset(settings_.resume_s);
+  if (is_braked_) return Reaction::kBrake;
+  return held_until_ && now_ < *held_until_ ? Reaction::kHold : Reaction::kNone;
+}
+
+}  // namespace sidestep::control

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <optional>
+
+#include "sidestep/control/arm_capsules.h"
+#include "sidestep/control/latest.h"
+#include "sidestep/control/ring_log.h"
+#include "sidestep/control/safety.h"
+#include "sidestep/control/tick.h"
+#include "sidestep/control/tracker.h"
+#include "sidestep/core/obstacle_state.h"
+#include "sidestep/robot/robot_model.h"
+
+namespace sidestep::control {
+
+/// Looks at every tick before it is sent, and says whether the robot has to come to rest instead.
+/// Which checks there are, with what bounds, for what reasons: docs/safety.md.
+///
+/// Its promise rests on an induction: a motion is let through only if the stop that would follow it
+/// meets no place that an obstacle can reach by then, where an obstacle moves as it was seen to and
+/// may change its velocity by obstacle_acceleration. So at every tick there is a stop that has been
+/// checked. It is not certified and does not make a robot safe for people.
+///
+/// One thread watches, one judges. Judge allocates nothing, takes no lock and never waits.
+class Supervisor {
+ public:
+  /// @param tracker whose stops are judged.
+  /// @throws std::invalid_argument for a robot without capsules.
+  Supervisor(const robot::RobotModel& robot, const JerkLimitedTracker& tracker,
+             const SafetySettings& settings);
+
+  const SafetySettings& settings() const { return settings_; }
+
+  /// What moves, as it is known now.
+  void Watch(ObstacleReport report) { reports_.Put(std::move(report)); }
+
+  /// A person has seen to the cause of a brake: it may move again.
+  void Rearm() { rearms_.fetch_add(1, std::memory_order_relaxed); }
+
+  /// Whether a plan is refused that is to be followed from this tick on.
+  /// @param before where it is at the tick before, when measured.commanded was sent; its first
+  /// point
+  ///   if it begins now. @param begins whether it does: plans are cubics whose acceleration jumps
+  ///   at support states, of which the first is one, so that only a plan that goes on with a motion
+  ///   has to agree with its acceleration.
+  bool Refuses(const JointPoint& before, bool begins, const Measured& measured) noexcept;
+
+  /// What is to be done instead of sending `next`: kNone, kHold or kBrake.
+  Reaction Judge(const Measured& measured, const JointPoint& next, double period_s) noexcept;
+
+  /// Calls take(SafetyEvent) for what has begun to be found since the last call.
+  template <class Take>
+  void DrainEvents(const Take& take) {
+    events_.Drain(take);
+  }
+
+ private:
+  static constexpr int kStops = 8;  // the way to rest is looked at in so many pieces
+
+  void Find(SafetyCheck check, Reaction reaction, bool is_found, double value, double limit);
+  void JudgePerception(const ObstacleReport* report);
+  void JudgeRobot(const Measured& measured);
+  void JudgeCommand(const Measured& measured, const JointPoint& next, double period_s);
+  void JudgePlaces(const ObstacleReport* report, const JointPoint& next, double period_s,
+                   Reaction if_near);
+  void PlaceStop(const JointPoint& next, double period_s);
+  Reaction React();
+
+  const robot::RobotModel robot_;
+  const JerkLimitedTracker tracker_;
+  const SafetySettings settings_;
+  const ArmCapsules capsules_;
+
+  Latest<ObstacleReport> reports_;
+  RingLog<SafetyEvent> events_;
+  std::atomic<int> rearms_{0};
+
+  // Of the thread that judges.
+  EpisodeTime now_;
+  std::optional<EpisodeTime> begin_;
+  std::array<bool, kNumSafetyChecks> is_found_{};
+  Reaction worst_ = Reaction::kNone;  // of this tick
+  double pushed_s_ = 0;
+  int rearmed_ = 0;
+  bool is_braked_ = false;
+  std::optional<EpisodeTime> held_until_;
+  // The capsules at kStops + 1 moments of the stop after the command, and those moments.
+  std::array<ArmCapsules::All, kStops + 1> placed_;
+  std::array<double, kStops + 1> placed_s_{};
+};
+
+}  // namespace sidestep::control

@@ -1,0 +1,310 @@
+#include "sidestep/control/supervisor.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sidestep/control/follower.h"
+#include "sidestep/core/random.h"
+#include "tests/support/allocations.h"
+
+namespace sidestep::control {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kTick_s = 0.001;
+
+robot::RobotModel Panda() {
+  return robot::RobotModel::Load(SIDESTEP_SOURCE_DIR "/models", "panda",
+                                 Pose::Translation({0, 0, 0.5}));
+}
+
+SafetySettings Lab() {
+  SafetySettings settings;
+  settings.profile = SafetyProfile::kLab;
+  settings.torque_n_m = JointVector::Constant(7, 20);
+  settings.floor_m = 0.4;  // the base stands at 0.5
+  return settings;
+}
+
+ObstacleState Ball(const Vector3d& p_W, const Vector3d& v_W, EpisodeTime t) {
+  ObstacleState ball;
+  ball.t = t;
+  ball.X_WO = Pose::Translation(p_W);
+  ball.radius_m = 0.1;
+  ball.v_W = v_W;
+  return ball;
+}
+
+// A Panda that does at once what it is told, swings to and fro at the shoulder, and sees a ball
+// that may move. What is wrong with it is up to the test.
+class Scene {
+ public:
+  explicit Scene(const SafetySettings& settings = Lab())
+      : follower_(panda_, TrackerLimits::Of(panda_), settings),
+        capsules_(panda_),
+        state_(RestAt(panda_.configurations().at("ready"))) {
+    Swing();
+  }
+
+  // What is reported, every 10 ms, of the world at that time.
+  std::function<ObstacleReport(EpisodeTime)> see = [](EpisodeTime t) {
+    return ObstacleReport{t, {}};
+  };
+  // What is wrong with what is measured.
+  std::function<void(Measured&)> disturb = [](Measured&) {};
+
+  void RunTo(double t_s) {
+    for (; ticks_ < std::lround(t_s / kTick_s); ++ticks_) {
+      const EpisodeTime t(static_cast<double>(ticks_) * kTick_s);
+      if (ticks_ % 10 == 0) follower_.Watch(see(t));
+      Measured measured{t, state_.q, state_.v, state_, {}, 1, 0, true};
+      disturb(measured);
+      const int allocations = CountAllocations().count;
+      state_ = follower_.Tick(measured, HorizonOffset(kTick_s)).motion;
+      ASSERT_EQ(CountAllocations().count, allocations);
+      if (!state_.v.isZero(0)) last_moved_s_ = t.seconds();
+      follower_.DrainSafetyEvents([this](const SafetyEvent& event) { events_.push_back(event); });
+      follower_.DrainLog([](const TickRecord&) {});
+    }
+  }
+
+  // Submits a swing of 0.5 rad and back, for 20 s, from where it rests.
+  void Swing() {
+    const double period_s = 4;
+    Trajectory swing;
+    constexpr int kStates = 101;
+    swing.t_s = Eigen::VectorXd::LinSpaced(kStates, 0, 20);
+    swing.q = Eigen::VectorXd(state_.q).replicate(1, kStates);
+    swing.v = Eigen::MatrixXd::Zero(7, kStates);
+    for (int k = 0; k < kStates; ++k) {
+      const double w = 2 * 3.14159265358979 / period_s;
+      swing.q(0, k) += 0.5 * (1 - std::cos(w * swing.t_s(k)));
+      swing.v(0, k) = 0.5 * w * std::sin(w * swing.t_s(k));
+    }
+    follower_.Submit(swing, EpisodeTime(static_cast<double>(ticks_) * kTick_s));
+  }
+
+  Follower& follower() { return follower_; }
+  const JointPoint& state() const { return state_; }
+  robot::RobotMode mode() const { return follower_.mode(); }
+  bool is_at_rest() const { return state_.v.isZero(0) && state_.a.isZero(0); }
+  double last_moved_s() const { return last_moved_s_; }
+  // The first event of each check.
+  std::map<SafetyCheck, SafetyEvent> events() const {
+    std::map<SafetyCheck, SafetyEvent> first;
+    for (const SafetyEvent& event : events_) first.emplace(event.check, event);
+    return first;
+  }
+  // From the arm, as it is, to a ball.
+  double DistanceTo(const ObstacleState& ball) const {
+    ArmCapsules::All placed;
+    capsules_.Place(state_.q, placed);
+    double nearest = 1e9;
+    for (int k = 0; k < capsules_.size(); ++k) {
+      const auto& capsule = placed[static_cast<std::size_t>(k)];
+      const Vector3d ab = capsule.b - capsule.a, ap = ball.X_WO.translation() - capsule.a;
+      const double s = std::clamp(ap.dot(ab) / ab.squaredNorm(), 0.0, 1.0);
+      nearest = std::min(nearest, (ap - s * ab).norm() - capsule.radius_m - ball.radius_m);
+    }
+    return nearest;
+  }
+
+ private:
+  robot::RobotModel panda_ = Panda();
+  Follower follower_;
+  ArmCapsules capsules_;
+  JointPoint state_;
+  long ticks_ = 0;
+  double last_moved_s_ = 0;
+  std::vector<SafetyEvent> events_;
+};
+
+TEST(Supervisor, LetsAMotionPassThatNothingIsWrongWith) {
+  Scene scene;
+  scene.see = [](EpisodeTime t) { return ObstacleReport{t, {Ball({-2, 2, 1}, {0.3, 0, 0}, t)}}; };
+  scene.RunTo(3);
+  EXPECT_THAT(scene.events(), testing::IsEmpty());
+  EXPECT_EQ(scene.mode(), robot::RobotMode::kMoving);
+  EXPECT_GT(scene.last_moved_s(), 2.99);
+}
+
+// What is done to a scene that goes well, at 1 s, and what has to come of it.
+struct Fault {
+  const char* name;
+  SafetyCheck check;
+  Reaction reaction;
+  double found_by_s;  ///< after the fault, at the latest
+  std::function<void(Scene&)> inject;
+};
+std::ostream& operator<<(std::ostream& stream, const Fault& fault) { return stream << fault.name; }
+
+std::vector<Fault> Faults() {
+  const auto measured = [](auto spoil) { return [spoil](Scene& scene) { scene.disturb = spoil; }; };
+  const auto seen = [](auto see) { return [see](Scene& scene) { scene.see = see; }; };
+  return {
+      {"EveryScanLost", SafetyCheck::kPerceptionStale, Reaction::kHold, 0.32, seen([](EpisodeTime) {
+         return ObstacleReport{EpisodeTime(1), {}};
+       })},
+      {"FramesOfTheFuture", SafetyCheck::kTimeStamps, Reaction::kHold, 0.02,
+       seen([](EpisodeTime t) {
+         return ObstacleReport{t + HorizonOffset(0.05), {}};
+       })},
+      {"AnObstacleLost", SafetyCheck::kObstacleLost, Reaction::kHold, 0.32, seen([](EpisodeTime t) {
+         return ObstacleReport{t, {Ball({-2, 2, 1}, Vector3d::Zero(), EpisodeTime(1))}};
+       })},
+      {"AnObstacleFasterThanDeclared", SafetyCheck::kObstacleTooFast, Reaction::kBrake, 0.02,
+       seen([](EpisodeTime t) {
+         return ObstacleReport{t, {Ball({-3, 3, 1}, {0, -0.6, 0}, t)}};
+       })},
+      {"SomethingTooNear", SafetyCheck::kClearance, Reaction::kBrake, 0.02, seen([](EpisodeTime t) {
+         return ObstacleReport{t, {Ball({0.3, 0, 1.35}, Vector3d::Zero(), t)}};
+       })},
+      {"TheArmNotWhereItWasTold", SafetyCheck::kTracking, Reaction::kBrake, 0.002,
+       measured([](Measured& m) { m.q(2) += 0.03; })},
+      {"APositionThatIsNoNumber", SafetyCheck::kTracking, Reaction::kBrake, 0.002,
+       measured([](Measured& m) { m.q(2) = std::nan(""); })},
+      {"APush", SafetyCheck::kExternalTorque, Reaction::kBrake, 0.03,
+       measured([](Measured& m) { m.tau_ext = JointVector::Constant(7, 11); })},
+      {"PacketsLostOneAfterTheOther", SafetyCheck::kLink, Reaction::kHold, 0.002,
+       measured([](Measured& m) { m.lost_in_a_row = 6; })},
+      {"ManyPacketsLost", SafetyCheck::kLink, Reaction::kHold, 0.002,
+       measured([](Measured& m) { m.success_rate = 0.85; })},
+      {"ARobotThatSaysThatItIsNotFit", SafetyCheck::kRobotMode, Reaction::kBrake, 0.002,
+       measured([](Measured& m) { m.is_fit = false; })},
+      {"APlanThatBeginsElsewhere", SafetyCheck::kSplice, Reaction::kRefuse, 0.002,
+       [](Scene& scene) {
+         Trajectory elsewhere;
+         elsewhere.t_s = Eigen::VectorXd::Zero(1);
+         elsewhere.q = scene.state().q;
+         elsewhere.q(3) += 0.01;
+         elsewhere.v = Eigen::VectorXd::Zero(7);
+         scene.follower().Submit(elsewhere, EpisodeTime(1));
+       }},
+      {"APlanThroughTheFloor", SafetyCheck::kWorkspace, Reaction::kBrake, 3,
+       [](Scene& scene) {
+         Trajectory down;
+         down.t_s = Eigen::VectorXd::LinSpaced(2, 0, 4);
+         down.q = Eigen::VectorXd(scene.state().q).replicate(1, 2);
+         down.v = Eigen::MatrixXd::Zero(7, 2);
+         down.v.col(0) = scene.state().v;
+         down.q(1, 1) = 1.5;
+         down.q(3, 1) = -1.8;
+         scene.follower().Submit(down, EpisodeTime(1));
+       }},
+  };
+}
+
+class SupervisorFault : public testing::TestWithParam<Fault> {};
+
+TEST_P(SupervisorFault, IsFoundAndTheRobotComesToRestAsSpecified) {
+  const Fault& fault = GetParam();
+  Scene scene;
+  ASSERT_NO_FATAL_FAILURE(scene.RunTo(1));
+  ASSERT_THAT(scene.events(), testing::IsEmpty());
+  ASSERT_GT(scene.state().v.norm(), 0.1) << "it was at rest anyway";
+  fault.inject(scene);
+  ASSERT_NO_FATAL_FAILURE(scene.RunTo(5));
+  const auto events = scene.events();
+  const auto found = events.find(fault.check);
+  ASSERT_NE(found, events.end());
+  EXPECT_EQ(found->second.reaction, fault.reaction);
+  EXPECT_LE(found->second.t.seconds(), 1 + fault.found_by_s + 1e-9);
+  EXPECT_TRUE(scene.is_at_rest());
+  EXPECT_LE(scene.last_moved_s(), found->second.t.seconds() + 0.35);  // the longest stop
+  EXPECT_EQ(scene.mode(), fault.reaction == Reaction::kBrake ? robot::RobotMode::kFault
+                                                             : robot::RobotMode::kHolding);
+}
+
+// A hold ends by itself when its cause has been gone for a second and there is a plan from where
+// the robot is; a brake does not, until somebody rearms it.
+TEST_P(SupervisorFault, EndsByItselfOnlyIfItWasAHold) {
+  const Fault& fault = GetParam();
+  Scene scene;
+  const auto see = scene.see;
+  const auto disturb = scene.disturb;
+  ASSERT_NO_FATAL_FAILURE(scene.RunTo(1));
+  fault.inject(scene);
+  ASSERT_NO_FATAL_FAILURE(scene.RunTo(5));
+  scene.see = see;
+  scene.disturb = disturb;
+  ASSERT_NO_FATAL_FAILURE(scene.RunTo(5.9));
+  EXPECT_TRUE(scene.is_at_rest()) << "it goes on too soon";
+  ASSERT_NO_FATAL_FAILURE(scene.RunTo(6.5));
+  EXPECT_TRUE(scene.is_at_rest()) << "it goes on by a plan that it has left";
+  if (fault.check == SafetyCheck::kWorkspace) return;  // it still stands too low
+  scene.Swing();
+  ASSERT_NO_FATAL_FAILURE(scene.RunTo(7.5));
+  EXPECT_EQ(scene.is_at_rest(), fault.reaction == Reaction::kBrake);
+  if (fault.reaction != Reaction::kBrake) return;
+  scene.follower().Rearm();
+  ASSERT_NO_FATAL_FAILURE(scene.RunTo(7.6));
+  scene.Swing();
+  ASSERT_NO_FATAL_FAILURE(scene.RunTo(8.5));
+  EXPECT_FALSE(scene.is_at_rest());
+}
+
+TEST_P(SupervisorFault, IsOnlyWrittenDownWhenItObserves) {
+  const Fault& fault = GetParam();
+  SafetySettings settings = Lab();
+  settings.profile = SafetyProfile::kObserve;
+  Scene scene(settings);
+  ASSERT_NO_FATAL_FAILURE(scene.RunTo(1));
+  fault.inject(scene);
+  ASSERT_NO_FATAL_FAILURE(scene.RunTo(4.5));
+  EXPECT_EQ(scene.events().count(fault.check), 1u);
+  EXPECT_EQ(scene.mode(), robot::RobotMode::kMoving);
+}
+
+INSTANTIATE_TEST_SUITE_P(Injected, SupervisorFault, testing::ValuesIn(Faults()),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+// Balls from all sides, at the arm, within what was declared: they change their velocity as hard as
+// they may, at random. The arm may be touched at rest, never in motion.
+TEST(Supervisor, IsAtRestBeforeAnythingWithinTheEnvelopeTouchesIt) {
+  RandomStream random(1, "balls");
+  int stops = 0;
+  for (int episode = 0; episode < 60; ++episode) {
+    Scene scene;
+    const SafetySettings settings = Lab();
+    const double angle = random.Uniform(0, 6.28);
+    Vector3d p(1.3 * std::cos(angle), 1.3 * std::sin(angle), random.Uniform(0.6, 1.4));
+    Vector3d v = (Vector3d(0.3, 0, 1.1) - p).normalized() * 0.4;
+    Vector3d a = Vector3d::Zero();
+    ObstacleState ball;
+    for (int ms = 0; ms < 5000; ms += 10) {
+      if (ms % 200 == 0) {
+        a = (Vector3d(0.3, 0, 1.1) - p).normalized();  // by and large towards the arm
+        for (double& part : a) part += random.Uniform(-1, 1);
+        a *= settings.obstacle_acceleration_m_s2 / a.norm();
+      }
+      v += 0.01 * a;
+      if (v.norm() > settings.obstacle_speed_m_s) v *= settings.obstacle_speed_m_s / v.norm();
+      p += 0.01 * v;
+      ball = Ball(p, v, EpisodeTime(0.001 * ms));
+      scene.see = [&](EpisodeTime t) { return ObstacleReport{t, {ball}}; };
+      ASSERT_NO_FATAL_FAILURE(scene.RunTo(0.001 * (ms + 10)));
+      if (scene.DistanceTo(ball) <= 0) {
+        ASSERT_TRUE(scene.is_at_rest()) << "episode " << episode << " at " << ms << " ms";
+        break;
+      }
+    }
+    if (scene.events().count(SafetyCheck::kStopPath) > 0) ++stops;
+  }
+  EXPECT_GT(stops, 20) << "nothing came near enough to show anything";
+}
+
+TEST(Supervisor, NeedsCapsules) {
+  const robot::RobotModel wam =
+      robot::RobotModel::Load(SIDESTEP_SOURCE_DIR "/models", "wam", Pose());
+  EXPECT_THROW(Follower(wam, TrackerLimits::Of(wam), Lab()), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace sidestep::control
