@@ -15,6 +15,7 @@
 #include "sidestep/bench/metrics/registry.h"
 #include "sidestep/bench/planner_settings.h"
 #include "sidestep/bench/planning_worker.h"
+#include "sidestep/bench/safety_watch.h"
 #include "sidestep/bench/sensor_watch.h"
 #include "sidestep/bench/true_world.h"
 #include "sidestep/core/cpu_time.h"
@@ -77,6 +78,9 @@ class Loop {
         worker_(options.wall_clock ? MakeThreadWorker() : MakeInlineWorker()),
         recorder_(scenario, robot, world),
         end_s_(kHorizons * scenario.horizon_s) {
+    if (scenario.safety.profile != scenarios::SafetyProfile::kOff) {
+      safety_.emplace(scenario, world);
+    }
     for (const char* const stage : kStages) result_.times[stage];
     result_.times["cycle"];
   }
@@ -111,7 +115,11 @@ class Loop {
 
   void Go() {
     while (true) {
-      if (options_.is_stopped && options_.is_stopped()) return Stop();
+      if (options_.is_stopped && options_.is_stopped()) {
+        return Stop("it was stopped from outside");
+      }
+      const robot::RobotStatus status = world_.robot->Status();
+      if (status.mode == robot::RobotMode::kFault) return Stop("the robot stopped: " + status.why);
       // Of things due at the same time, plans take effect first, then scans, then a new cycle.
       double next_s = std::min({NextEffect(), NextScan(), NextCycle(), end_s_});
       if (options_.wall_clock) next_s = std::min(next_s, now_s_ + kPoll_s);
@@ -129,8 +137,8 @@ class Loop {
     }
   }
 
-  // Somebody wants it to end: the robot comes to rest first.
-  void Stop() {
+  // It is to end, or nothing more can come of it: the robot comes to rest first.
+  void Stop(const std::string& why) {
     world_.robot->Hold();
     const double latest_s = now_s_ + kLongestStop_s;
     for (bool at_rest = false; !at_rest && now_s_ < latest_s;) {
@@ -138,7 +146,7 @@ class Loop {
       at_rest = world_.robot->Read().v.cwiseAbs().maxCoeff() <= kStill_rad_s;
     }
     is_aborted_ = true;
-    result_.reason = "it was stopped from outside";
+    result_.reason = why;
   }
 
   // Stops the robot first of all. What happened before is worth keeping, but whatever failed may
@@ -178,6 +186,9 @@ class Loop {
     world_.robot->AdvanceTo(EpisodeTime(t_s));
     KeepTicks();
     KeepTruth();
+    for (SafetyEvent& event : world_.robot->TakeSafetyEvents()) {
+      result_.safety_events.push_back(std::move(event));
+    }
   }
 
   void KeepTicks() { KeepTicks(world_.robot->TakeControlLog()); }
@@ -216,6 +227,7 @@ class Loop {
     model_->Observe(*scan);
     for (TrackEvent& event : model_->TakeEvents()) recorder_.Keep(std::move(event));
     recorder_.Keep(*scan, EpisodeTime(now_s_), model_->Occupancy());
+    if (safety_) world_.robot->Watch(safety_->Observe(*scan));
     has_seen_ = true;
   }
 
@@ -232,6 +244,11 @@ class Loop {
     // In real time a cycle that is done early need not wait for its moment.
     if (!options_.wall_clock) ScheduleCycle(now_s_ + expected.seconds());
     if (!has_seen_) return;  // nothing is known yet
+    if (world_.robot->Status().mode == robot::RobotMode::kHolding) {
+      // It has left its plan by itself.
+      pending_.clear();
+      replanner_.Forget();
+    }
     begun_ = {now_s_, expected, model_->MakeField()};
     worker_->Begin(
         [this, task = replanner_.Prepare(EpisodeTime(now_s_), world_.robot->Read(), expected, goal_,
@@ -314,6 +331,7 @@ class Loop {
   std::unique_ptr<Clock> clock_;
   std::unique_ptr<PlanningWorker> worker_;
   EpisodeRecorder recorder_;
+  std::optional<SafetyWatch> safety_;
 
   std::deque<Pending> pending_;
   Begun begun_ = {};

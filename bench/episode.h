@@ -8,6 +8,7 @@
 
 #include "sidestep/bench/episode_world.h"
 #include "sidestep/bench/outcome.h"
+#include "sidestep/core/samples.h"
 #include "sidestep/record/recording.h"
 #include "sidestep/robot/robot_model.h"
 #include "sidestep/robot/world_truth.h"
@@ -45,6 +46,7 @@ struct EpisodeResult {
   int late_plans = 0;  ///< that came after the moment they were made for, and were dropped
   /// Scans by each sensor's name that were captured no later than the one before, and left out.
   std::map<std::string, int> scans_left_out;
+  std::vector<SafetyEvent> safety_events;  ///< of the robot's supervisor, in order
 };
 
 /// How an episode is run, beside what the scenario says.

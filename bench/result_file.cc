@@ -87,6 +87,14 @@ std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& s
       {"run", RunId(identity)}, {"scenario", identity.scenario}, {"models", identity.models}};
   json["versions"] = versions;
   json["scans_left_out"] = result.scans_left_out;
+  json["safety_events"] = Json::array();
+  for (const SafetyEvent& event : result.safety_events) {
+    json["safety_events"].push_back({{"t_s", event.t.seconds()},
+                                     {"check", event.check},
+                                     {"reaction", event.reaction},
+                                     {"value", NumberOrNull(event.value)},
+                                     {"limit", NumberOrNull(event.limit)}});
+  }
   json["wall_clock"] = {{"episode_s", result.wall_s},
                         {"cycle_cpu", StageTable(result.times)},
                         {"cycles_over_charge", result.cycles_over_charge},

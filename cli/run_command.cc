@@ -126,6 +126,9 @@ void AddRunCommand(CommandLine& line) {
          "What a planning cycle takes: charged (always the same), measured (the CPU time it "
          "needs; no two runs are alike), none")
       ->check(CLI::IsMember({"charged", "measured", "none"}));
+  run->add_option("--safety", overrides.safety,
+                  "Of the robot's supervisor: off, observe (write down what lab would do), lab (act)")
+      ->check(CLI::IsMember({"off", "observe", "lab"}));
   run->add_option(
          "--clock", options->clock,
          "virtual: as fast as it goes, the same bits again; wall: in real time, planning in "

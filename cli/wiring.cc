@@ -23,6 +23,7 @@ void Override(scenarios::Scenario& scenario, const Overrides& overrides) {
   if (overrides.knowledge) scenario.knowledge = *overrides.knowledge;
   if (overrides.predictor) scenario.predictor = *overrides.predictor;
   if (overrides.latency) scenario.latency = scenarios::LatencyFromString(*overrides.latency);
+  if (overrides.safety) scenario.safety.profile = scenarios::SafetyFromString(*overrides.safety);
   if (overrides.latency_ms) scenario.latency_s = *overrides.latency_ms / 1e3;
   if (overrides.epsilon_m) {
     scenario.epsilon_m = *overrides.epsilon_m;
@@ -52,6 +53,7 @@ void CheckGivenOnce(const Overrides& overrides) {
                {"--predictor", "predictor", overrides.predictor.has_value()},
                {"--seed", "seed", overrides.seed.has_value()},
                {"--latency", "replanning.latency", overrides.latency.has_value()},
+               {"--safety", "safety.profile", overrides.safety.has_value()},
                {"--latency-ms", "replanning.latency_s", overrides.latency_ms.has_value()},
                {"--epsilon", "planner.epsilon_m", overrides.epsilon_m.has_value()}};
   const auto fail = [](const std::string& path, const std::string& flag) {

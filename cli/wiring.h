@@ -14,7 +14,7 @@ namespace sidestep::cli {
 /// What the command line may change of a scenario; each thing once, by a flag or by a setting.
 struct Overrides {
   scenarios::Settings settings;  ///< put in place first
-  std::optional<std::string> knowledge, predictor, latency;
+  std::optional<std::string> knowledge, predictor, latency, safety;
   std::optional<double> speed_m_s;  ///< of every moving obstacle
   std::optional<int> seed;
   std::optional<double> latency_ms, epsilon_m;

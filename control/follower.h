@@ -65,10 +65,10 @@ class Follower {
   void DrainLog(const Take& take) {
     log_.Drain(take);
   }
-  /// Calls take(SafetyEvent) for what the supervisor has found since the last call.
+  /// Calls take(Finding) for what the supervisor has found since the last call.
   template <class Take>
-  void DrainSafetyEvents(const Take& take) {
-    if (supervisor_) supervisor_->DrainEvents(take);
+  void DrainFindings(const Take& take) {
+    if (supervisor_) supervisor_->DrainFindings(take);
   }
   /// Ticks that were not logged because nobody drained the log in time.
   std::size_t lost_ticks() const { return log_.lost(); }

@@ -42,7 +42,7 @@ enum class Reaction {
 const char* ToString(Reaction reaction);
 
 /// What the supervisor found, when it found it.
-struct SafetyEvent {
+struct Finding {
   EpisodeTime t;
   SafetyCheck check = SafetyCheck::kPerceptionStale;
   Reaction reaction = Reaction::kNone;

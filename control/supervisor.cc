@@ -41,7 +41,11 @@ double Distance(const ArmCapsules::Placed& capsule, const ObstacleState& obstacl
 
 Supervisor::Supervisor(const robot::RobotModel& robot, const JerkLimitedTracker& tracker,
                        const SafetySettings& settings)
-    : robot_(robot), tracker_(tracker), settings_(settings), capsules_(robot), events_(kLogLength) {
+    : robot_(robot),
+      tracker_(tracker),
+      settings_(settings),
+      capsules_(robot),
+      findings_(kLogLength) {
   if (robot.capsules().empty()) {
     throw std::invalid_argument("Supervisor: the robot has no capsules");
   }
@@ -86,7 +90,7 @@ void Supervisor::Find(SafetyCheck check, Reaction reaction, bool is_found, doubl
   bool& was_found = is_found_[static_cast<std::size_t>(check)];
   if (is_found) {
     worst_ = std::max(worst_, reaction);
-    if (!was_found) events_.Append({now_, check, reaction, value, limit});
+    if (!was_found) findings_.Append({now_, check, reaction, value, limit});
   }
   was_found = is_found;
 }

@@ -50,10 +50,10 @@ class Supervisor {
   /// What is to be done instead of sending `next`: kNone, kHold or kBrake.
   Reaction Judge(const Measured& measured, const JointPoint& next, double period_s) noexcept;
 
-  /// Calls take(SafetyEvent) for what has begun to be found since the last call.
+  /// Calls take(Finding) for what has begun to be found since the last call.
   template <class Take>
-  void DrainEvents(const Take& take) {
-    events_.Drain(take);
+  void DrainFindings(const Take& take) {
+    findings_.Drain(take);
   }
 
  private:
@@ -74,7 +74,7 @@ class Supervisor {
   const ArmCapsules capsules_;
 
   Latest<ObstacleReport> reports_;
-  RingLog<SafetyEvent> events_;
+  RingLog<Finding> findings_;
   std::atomic<int> rearms_{0};
 
   // Of the thread that judges.

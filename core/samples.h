@@ -62,6 +62,13 @@ struct CycleRecord {
   std::vector<PredictedObject> objects;
 };
 
+/// What a robot's safety supervisor found, when it began to find it.
+struct SafetyEvent {
+  EpisodeTime t;
+  std::string check, reaction;  ///< words of control/safety.h
+  double value = 0, limit = 0;  ///< what was measured, and what it may be, in the check's unit
+};
+
 /// What tracking noticed about a thing, when it noticed it.
 struct TrackEvent {
   EpisodeTime t;     ///< of the scan

@@ -35,6 +35,11 @@ CycleResult Replanner::Work(const CycleTask& task) const {
   return RunCycle(planner_, options_, task);
 }
 
+void Replanner::Forget() {
+  running_.reset();
+  is_braking_ = false;
+}
+
 void Replanner::Accept(const CycleResult& result) {
   if (!result.plan) return;
   running_ = result.plan;

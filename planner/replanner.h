@@ -29,6 +29,9 @@ class Replanner {
   /// The work. May run in another thread; of one replanner, one at a time.
   CycleResult Work(const CycleTask& task) const;
 
+  /// The robot has left the plan that ran, and stops: what follows begins where it is.
+  void Forget();
+
   /// From now on the result's plan is the one that runs, if it has one. A result that is not
   /// accepted (it came too late) changes nothing.
   void Accept(const CycleResult& result);

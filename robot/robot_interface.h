@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "sidestep/core/obstacle_state.h"
 #include "sidestep/core/samples.h"
 #include "sidestep/core/time.h"
 #include "sidestep/core/trajectory.h"
@@ -42,6 +43,12 @@ class RobotInterface {
 
   /// Brakes within its limits and stays there. Cannot fail: it is what is left when all else has.
   virtual void Hold() noexcept = 0;
+
+  /// What moves nearby, for the robot's own safety.
+  virtual void Watch(const ObstacleReport&) {}
+
+  /// What its safety supervisor has found since the last call.
+  virtual std::vector<SafetyEvent> TakeSafetyEvents() { return {}; }
 
   /// The simulator steps to time `t`; hardware waits for it. Never goes back.
   /// @throws RobotError if the robot has failed.

@@ -111,6 +111,16 @@ enum class Latency {
 };
 inline constexpr const char* kLatencyWords[] = {"charged", "measured", "none"};  ///< in that order
 
+/// What the safety supervisor of a robot does about what it finds (control/safety.h).
+enum class SafetyProfile { kOff, kObserve, kLab };
+inline constexpr const char* kSafetyWords[] = {"off", "observe", "lab"};  ///< in that order
+
+struct Safety {
+  SafetyProfile profile = SafetyProfile::kOff;
+  double obstacle_speed_m_s = 0.5;  ///< what obstacles are declared to do
+  double obstacle_acceleration_m_s2 = 2;
+};
+
 /// How the planner knows what never moves.
 enum class StaticWorld {
   kOccupancy,  ///< as the sensor sees it: by cells
@@ -159,6 +169,7 @@ struct Scenario {
   double latency_s = 0;  ///< charged to each planning cycle; measured: the most it may take
   double longest_latency_s() const { return latency == Latency::kNone ? 0 : latency_s; }
 
+  Safety safety;
   SensorSettings sensor;
   std::uint64_t seed = 1;
 
@@ -175,6 +186,9 @@ struct Scenario {
 /// @throws std::invalid_argument for another word than those of kLatencyWords.
 Latency LatencyFromString(const std::string& word);
 std::string ToString(Latency latency);
+/// The same for those of kSafetyWords.
+SafetyProfile SafetyFromString(const std::string& word);
+std::string ToString(SafetyProfile profile);
 
 /// What to throw where the value of `key` (a path in the file) is wrong: `FILE:LINE: KEY: WHY`, or
 /// `--set KEY: WHY` where a person set it, or a part of it.

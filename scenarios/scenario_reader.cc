@@ -398,6 +398,22 @@ void ReadReplanning(const YamlReader& top, Scenario& scenario) {
   map.CheckNoUnknownKeys();
 }
 
+void ReadSafety(const YamlReader& top, Scenario& scenario) {
+  if (!top.Has("safety")) return;
+  const YamlReader map = top.GetMap("safety");
+  Safety& safety = scenario.safety;
+  const std::vector<std::string> words(std::begin(kSafetyWords), std::end(kSafetyWords));
+  safety.profile = SafetyFromString(map.GetChoice("profile", words));
+  const auto bounded = [&](const char* key, double& value, double most) {
+    if (!map.Has(key)) return;
+    value = map.GetPositive(key);
+    if (value > most) map.Fail(key, "must be at most " + ShortestText(most));
+  };
+  bounded("obstacle_speed_m_s", safety.obstacle_speed_m_s, 100);
+  bounded("obstacle_acceleration_m_s2", safety.obstacle_acceleration_m_s2, 1000);
+  map.CheckNoUnknownKeys();
+}
+
 void ReadPerception(const YamlReader& top, Scenario& scenario) {
   scenario.knowledge = top.GetString("knowledge");
   scenario.predictor = top.Has("predictor") ? top.GetString("predictor") : "kalman_cv";
@@ -528,6 +544,7 @@ Scenario ReadSettled(const YamlReader& top, const Origin& origin) {
   if (has_robot) {
     ReadPlanner(top, scenario);
     ReadReplanning(top, scenario);
+    ReadSafety(top, scenario);
   }
   ReadPerception(top, scenario);
   SeedMotions(scenario);

@@ -138,6 +138,9 @@ std::string PlannerText(const Scenario& scenario) {
   line("acceleration_limits", Word(scenario.acceleration_limits));
   return text + "replanning: {rate_hz: " + Number(scenario.replan_rate_hz) +
          ", latency: " + ToString(scenario.latency) + ", latency_s: " + Number(scenario.latency_s) +
+         "}\nsafety: {profile: " + ToString(scenario.safety.profile) +
+         ", obstacle_speed_m_s: " + Number(scenario.safety.obstacle_speed_m_s) +
+         ", obstacle_acceleration_m_s2: " + Number(scenario.safety.obstacle_acceleration_m_s2) +
          "}\n";
 }
 
@@ -150,6 +153,16 @@ Latency LatencyFromString(const std::string& word) {
     if (ToString(latency) == word) return latency;
   }
   throw std::invalid_argument("no latency is '" + word + "'");
+}
+
+std::string ToString(SafetyProfile profile) { return kSafetyWords[static_cast<int>(profile)]; }
+
+SafetyProfile SafetyFromString(const std::string& word) {
+  for (const SafetyProfile profile :
+       {SafetyProfile::kOff, SafetyProfile::kObserve, SafetyProfile::kLab}) {
+    if (ToString(profile) == word) return profile;
+  }
+  throw std::invalid_argument("no safety profile is '" + word + "'");
 }
 
 std::string ToYaml(const Scenario& scenario) {

@@ -161,6 +161,27 @@ class PredictedWorld final : public MappedWorld {
 
   std::vector<TrackEvent> TakeEvents() override { return tracker_.TakeEvents(); }
 
+  std::vector<ObstacleState> MovingNow() const override {
+    std::vector<ObstacleState> moving;
+    const auto add = [&](const TrackedObject& object, const Eigen::Quaterniond& R_WO) {
+      const PredictedMotion motion = predictor_->Predict(object);
+      constexpr HorizonOffset kShort(0.01);
+      const Pose turn(R_WO, Eigen::Vector3d::Zero());
+      ObstacleState& state = moving.emplace_back();
+      state.id = object.id;
+      state.t = object.latest().t;
+      const Pose X_WO = motion.X_WO(state.t), X_WO_later = motion.X_WO(state.t + kShort);
+      state.X_WO = X_WO * turn * Pose::Translation(object.box_center_O);
+      state.half_extents_m = object.box_half_extents_m;
+      state.v_W = (X_WO_later.translation() - X_WO.translation()) / kShort.seconds();
+    };
+    for (const auto& [object, R_WO] : named_objects_.Objects()) add(*object, R_WO);
+    for (const auto& object : tracker_.MovingObjects()) {
+      add(*object, Eigen::Quaterniond::Identity());
+    }
+    return moving;
+  }
+
  private:
   struct Belief {
     std::shared_ptr<const TrackedObject> object;

@@ -8,6 +8,7 @@
 #include "sidestep/core/cell_touch.h"
 #include "sidestep/core/grid.h"
 #include "sidestep/core/observations.h"
+#include "sidestep/core/obstacle_state.h"
 #include "sidestep/core/samples.h"
 #include "sidestep/core/solid.h"
 #include "sidestep/core/time.h"
@@ -76,6 +77,9 @@ class WorldModel {
   /// The objects in the latest field and where they are believed to be at `times`, for the record.
   virtual std::vector<PredictedObject> DescribeObjects(
       const std::vector<EpisodeTime>& times) const = 0;
+
+  /// What moves, as it was at the latest scan; nothing where nothing is tracked.
+  virtual std::vector<ObstacleState> MovingNow() const { return {}; }
 
   /// What tracking has noticed since the last call, in order; nothing where nothing is tracked.
   virtual std::vector<TrackEvent> TakeEvents() { return {}; }

@@ -3,6 +3,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sidestep/core/number_text.h"
+
 namespace sidestep::sim {
 namespace {
 
@@ -17,13 +19,14 @@ Eigen::VectorXd TorqueLimits(const robot::RobotModel& robot) {
 }  // namespace
 
 SimulatedRobot::SimulatedRobot(const robot::RobotModel& robot, World* world,
-                               std::function<void()> after_tick, double v_scale)
+                               std::function<void()> after_tick, double v_scale,
+                               const control::SafetySettings& safety)
     : world_(*world),
       after_tick_(std::move(after_tick)),
       stiffness_(robot.stiffness()),
       damping_(robot.damping()),
       torque_max_(TorqueLimits(robot)),
-      follower_(control::TrackerLimits::Of(robot, v_scale)) {
+      follower_(robot, control::TrackerLimits::Of(robot, v_scale), safety) {
   const Eigen::VectorXd q = world_.q();
   if (q.size() != robot.num_joints()) {
     throw std::invalid_argument("SimulatedRobot: the world's arm has another number of joints");
@@ -33,13 +36,22 @@ SimulatedRobot::SimulatedRobot(const robot::RobotModel& robot, World* world,
 
 JointState SimulatedRobot::Read() const { return {world_.time(), world_.q(), world_.v()}; }
 
-robot::RobotStatus SimulatedRobot::Status() const { return {follower_.mode(), ""}; }
+robot::RobotStatus SimulatedRobot::Status() const {
+  const robot::RobotMode mode = follower_.mode();
+  return {mode, mode == robot::RobotMode::kFault ? why_ : ""};
+}
 
 void SimulatedRobot::Submit(const Trajectory& trajectory, EpisodeTime start) {
   follower_.Submit(trajectory, start);
 }
 
 void SimulatedRobot::Hold() noexcept { follower_.Hold(); }
+
+void SimulatedRobot::Watch(const ObstacleReport& report) { follower_.Watch(report); }
+
+std::vector<SafetyEvent> SimulatedRobot::TakeSafetyEvents() {
+  return std::exchange(safety_events_, {});
+}
 
 void SimulatedRobot::AdvanceTo(EpisodeTime t) {
   const std::int64_t last = World::TickNotBefore(t);
@@ -57,6 +69,14 @@ void SimulatedRobot::Tick() {
   follower_.DrainLog([this](const control::TickRecord& tick) {
     log_.push_back({tick.t, tick.command.q, tick.command.v, tick.command.a, tick.q, tick.v,
                     world_.motor_torque()});
+  });
+  follower_.DrainFindings([this](const control::Finding& found) {
+    safety_events_.push_back({found.t, control::ToString(found.check),
+                              control::ToString(found.reaction), found.value, found.limit});
+    if (found.reaction == control::Reaction::kBrake) {
+      why_ = std::string(control::ToString(found.check)) + " of " +
+             FiniteText("{:.3g}", found.value) + ", allowed " + FiniteText("{:.3g}", found.limit);
+    }
   });
   after_tick_();
 }

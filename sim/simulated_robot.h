@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "sidestep/control/follower.h"
@@ -23,14 +24,18 @@ class SimulatedRobot final : public robot::RobotInterface {
   /// @param after_tick called after each tick of the world.
   /// @param v_scale of the robot's velocity limits, for the command: above 1 a motion may exceed
   /// them, and the record shows by how much.
-  /// @throws std::invalid_argument if the robot has not as many joints as the world's arm.
+  /// @param safety how it is supervised.
+  /// @throws std::invalid_argument if the robot has not as many joints as the world's arm, or is to
+  /// be supervised and has no capsules.
   SimulatedRobot(const robot::RobotModel& robot, World* world, std::function<void()> after_tick,
-                 double v_scale = 1);
+                 double v_scale = 1, const control::SafetySettings& safety = {});
 
   JointState Read() const override;
   robot::RobotStatus Status() const override;
   void Submit(const Trajectory& trajectory, EpisodeTime start) override;
   void Hold() noexcept override;
+  void Watch(const ObstacleReport& report) override;
+  std::vector<SafetyEvent> TakeSafetyEvents() override;
   /// Steps to the first tick that is not before `t`.
   void AdvanceTo(EpisodeTime t) override;
   /// One sample a tick: command and measurement at its beginning, the torque during it.
@@ -45,6 +50,8 @@ class SimulatedRobot final : public robot::RobotInterface {
   control::Follower follower_;
   control::JointPoint commanded_;  ///< the latest command
   std::vector<ControlSample> log_;
+  std::vector<SafetyEvent> safety_events_;
+  std::string why_;  ///< it has stopped by itself
 };
 
 }  // namespace sidestep::sim

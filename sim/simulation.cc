@@ -29,6 +29,29 @@ std::vector<std::string> NamesOf(const std::vector<scenarios::MovingObstacle>& o
   return names;
 }
 
+control::SafetySettings SafetyOf(const scenarios::Scenario& scenario,
+                                 const robot::RobotModel& robot) {
+  control::SafetySettings safety;
+  switch (scenario.safety.profile) {
+    case scenarios::SafetyProfile::kOff:
+      return safety;
+    case scenarios::SafetyProfile::kObserve:
+      safety.profile = control::SafetyProfile::kObserve;
+      break;
+    case scenarios::SafetyProfile::kLab:
+      safety.profile = control::SafetyProfile::kLab;
+      break;
+  }
+  if (robot.capsules().empty()) {
+    throw scenarios::WrongValue(scenario, "safety.profile",
+                                robot.name() + " has no capsules to be supervised by");
+  }
+  safety.obstacle_speed_m_s = scenario.safety.obstacle_speed_m_s;
+  safety.obstacle_acceleration_m_s2 = scenario.safety.obstacle_acceleration_m_s2;
+  safety.floor_m = scenario.floor_m;
+  return safety;
+}
+
 // Compiles the world. What is wrong with the robot's own file is told with its lines: those of the
 // whole world are of a text that nobody wrote.
 MujocoModelPtr Compile(const std::string& xml, const scenarios::Scenario& scenario,
@@ -56,7 +79,8 @@ Simulation::Simulation(const scenarios::Scenario& scenario, const robot::RobotMo
              StartOf(scenario, robot)),
       truth_(world_),
       robot_(std::make_unique<SimulatedRobot>(
-          robot, &world_, [this] { truth_.Observe(); }, scenario.velocity_limits ? 1 : kUnlimited)),
+          robot, &world_, [this] { truth_.Observe(); }, scenario.velocity_limits ? 1 : kUnlimited,
+          SafetyOf(scenario, robot))),
       sensor_name_(scenario.sensor.name),
       sensor_(MakeSensor(scenario, world_)) {}
 

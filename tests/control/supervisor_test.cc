@@ -70,7 +70,7 @@ class Scene {
       state_ = follower_.Tick(measured, HorizonOffset(kTick_s)).motion;
       ASSERT_EQ(CountAllocations().count, allocations);
       if (!state_.v.isZero(0)) last_moved_s_ = t.seconds();
-      follower_.DrainSafetyEvents([this](const SafetyEvent& event) { events_.push_back(event); });
+      follower_.DrainFindings([this](const Finding& event) { findings_.push_back(event); });
       follower_.DrainLog([](const TickRecord&) {});
     }
   }
@@ -97,9 +97,9 @@ class Scene {
   bool is_at_rest() const { return state_.v.isZero(0) && state_.a.isZero(0); }
   double last_moved_s() const { return last_moved_s_; }
   // The first event of each check.
-  std::map<SafetyCheck, SafetyEvent> events() const {
-    std::map<SafetyCheck, SafetyEvent> first;
-    for (const SafetyEvent& event : events_) first.emplace(event.check, event);
+  std::map<SafetyCheck, Finding> events() const {
+    std::map<SafetyCheck, Finding> first;
+    for (const Finding& event : findings_) first.emplace(event.check, event);
     return first;
   }
   // From the arm, as it is, to a ball.
@@ -123,7 +123,7 @@ class Scene {
   JointPoint state_;
   long ticks_ = 0;
   double last_moved_s_ = 0;
-  std::vector<SafetyEvent> events_;
+  std::vector<Finding> findings_;
 };
 
 TEST(Supervisor, LetsAMotionPassThatNothingIsWrongWith) {

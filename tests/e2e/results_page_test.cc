@@ -73,6 +73,7 @@ bool IsOfType(const Json& value, const std::string& type) {
   if (type.starts_with("text")) return value.is_string();
   if (type.starts_with("whole number")) return value.is_number_integer();
   if (type.starts_with("number")) return value.is_number();
+  if (type == "list") return value.is_array();
   return type == "map" && value.is_object();
 }
 

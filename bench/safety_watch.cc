@@ -1,0 +1,26 @@
+#include "sidestep/bench/safety_watch.h"
+
+#include "sidestep/bench/episode.h"
+
+namespace sidestep::bench {
+namespace {
+
+sdf::WorldModelOptions OptionsFor(const scenarios::Scenario& scenario, const EpisodeWorld& world) {
+  // Its fields are not asked for: what is near them is of no interest.
+  sdf::WorldModelOptions options = MakeWorldModelOptions(scenario, scenario.grid.cell_m, world);
+  options.knowledge = sdf::Knowledge::kPrediction;
+  options.growth_sigmas = 0;
+  return options;
+}
+
+}  // namespace
+
+SafetyWatch::SafetyWatch(const scenarios::Scenario& scenario, const EpisodeWorld& world)
+    : model_(sdf::MakeWorldModel(OptionsFor(scenario, world))) {}
+
+ObstacleReport SafetyWatch::Observe(const Scan& scan) {
+  model_->Observe(scan);
+  return {scan.t, model_->MovingNow()};
+}
+
+}  // namespace sidestep::bench
