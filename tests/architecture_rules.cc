@@ -302,7 +302,7 @@ const std::vector<ModuleRule>& ModuleRules() {
   static const std::vector<ModuleRule> rules = {
       {"core", {}, {"yaml-cpp/", "fmt/", "fcntl.h"}},
       {"record", {"core"}, {"hdf5.h", "fmt/"}},
-      {"robot", {"core"}, {}},
+      {"robot", {"core"}, {"arpa/", "netinet/"}},
       {"sdf", {"core"}, {"hwy/", "tbb/"}},
       {"planner", {"core", "robot", "sdf"}, {"ceres/", "ompl/", "hwy/"}},
       {"control", {"core", "robot"}, {}},
