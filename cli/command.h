@@ -23,6 +23,7 @@ void AddReproduceCommand(CommandLine& line);
 void AddStudyCommand(CommandLine& line);
 void AddDoctorCommand(CommandLine& line);
 void AddFieldCommand(CommandLine& line);
+void AddFciServerCommand(CommandLine& line);
 void AddManualCommand(CommandLine& line);
 
 }  // namespace sidestep::cli

@@ -1,0 +1,167 @@
+#include <csignal>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sidestep/cli/command.h"
+#include "sidestep/cli/console.h"
+#include "sidestep/cli/number_range.h"
+#include "sidestep/cli/wiring.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/sim/fci/fault_script.h"
+#include "sidestep/sim/fci/panda_world.h"
+#include "sidestep/sim/fci/server.h"
+#include "sidestep/sim/simulated_truth.h"
+
+namespace sidestep::cli {
+namespace {
+
+struct ServerCommand {
+  sim::fci::ServerOptions server;
+  std::string clock = "lockstep", scenario, faults;
+  std::vector<std::string> settings;
+  std::vector<double> q_start;
+};
+
+volatile std::sig_atomic_t interrupted = 0;
+
+// Ctrl-C and SIGTERM end the server, not what it is doing.
+class SignalGuard {
+ public:
+  SignalGuard()
+      : interrupt_(std::signal(SIGINT, [](int) { interrupted = 1; })),
+        terminate_(std::signal(SIGTERM, [](int) { interrupted = 1; })) {}
+  ~SignalGuard() {
+    std::signal(SIGINT, interrupt_);
+    std::signal(SIGTERM, terminate_);
+  }
+
+ private:
+  using Handler = void (*)(int);
+  Handler interrupt_, terminate_;
+};
+
+Eigen::VectorXd StartOf(const ServerCommand& options, const scenarios::Scenario& scenario,
+                        const robot::RobotModel& robot) {
+  if (options.q_start.empty()) {
+    if (scenario.q_start.size() > 0) return scenario.q_start;
+    return robot.configurations().at(scenario.start_name.empty() ? "home" : scenario.start_name);
+  }
+  Eigen::VectorXd q(robot.num_joints());
+  for (int i = 0; i < robot.num_joints(); ++i) {
+    const robot::JointLimits& limit = robot.limits()[static_cast<std::size_t>(i)];
+    q(i) = options.q_start[static_cast<std::size_t>(i)];
+    if (!(q(i) > limit.q_min && q(i) < limit.q_max)) {
+      throw InputError("--q-start", fmt::format("joint {} must be between {} and {} rad, is {}",
+                                                i + 1, limit.q_min, limit.q_max, q(i)));
+    }
+  }
+  return q;
+}
+
+scenarios::Scenario WorldOf(const ServerCommand& options, const DataPaths& paths) {
+  if (options.scenario.empty()) {
+    if (!options.settings.empty()) throw InputError("--set", "is of a --scenario");
+    return sim::fci::PandaAlone();
+  }
+  Overrides overrides;
+  overrides.settings = ParseSettings(options.settings);
+  Problem problem = LoadProblem(options.scenario, overrides, paths);
+  if (problem.robot.name() != "panda") {
+    throw InputError("--scenario",
+                     "its robot must be the panda, is '" + problem.robot.name() + "'");
+  }
+  return std::move(problem.scenario);
+}
+
+// Says once for each thing when the arm begins to touch it.
+class ContactTeller {
+ public:
+  explicit ContactTeller(const sim::World& world) : truth_(world) {}
+  void Observe() {
+    truth_.Observe();
+    for (const TruthSample& sample : truth_.TakeSamples()) {
+      if (sample.in_contact && sample.contact_object != touched_) {
+        Print("{:.3f} s: contact with {}\n", sample.contact_s, sample.contact_object);
+      }
+      touched_ = sample.in_contact ? sample.contact_object : "";
+    }
+  }
+
+ private:
+  sim::SimulatedTruth truth_;
+  std::string touched_;
+};
+
+int Serve(ServerCommand options) {
+  const DataPaths paths = FindDataPaths();
+  const sim::fci::FaultScript faults =
+      options.faults.empty() ? sim::fci::FaultScript() : sim::fci::ReadFaultScript(options.faults);
+  const scenarios::Scenario scenario = WorldOf(options, paths);
+  const robot::RobotModel robot = robot::RobotModel::Load(paths.models, "panda", scenario.X_WB);
+  const auto world =
+      sim::fci::MakePandaWorld(scenario, robot, paths.models, StartOf(options, scenario, robot));
+  ContactTeller contacts(*world);
+  sim::fci::PandaPlant plant(robot, world.get());
+  plant.AfterStep([&] { contacts.Observe(); });
+  sim::fci::SimulatedPanda panda(&plant, faults);
+  const auto tell = [&](const std::string& what) {
+    Print("{:.3f} s: {}\n", plant.time_s(), what);
+    FinishOutput();
+  };
+  panda.TellWith(tell);
+  options.server.version = faults.version;
+  options.server.clock =
+      options.clock == "wall" ? sim::fci::ServerClock::kWall : sim::fci::ServerClock::kLockStep;
+  std::optional<sim::fci::Server> server;
+  try {
+    server.emplace(&panda, options.server);
+  } catch (const robot::fci::LinkError& error) {
+    throw InputError("--address", error.what());
+  }
+  server->TellWith(tell);
+  Print("simulated Panda at {}, FCI version {}, {}; Ctrl-C ends it\n", options.server.address,
+        faults.version, options.clock);
+  FinishOutput();
+  const SignalGuard guard;
+  server->Run([] { return interrupted != 0; });
+  return 0;
+}
+
+}  // namespace
+
+void AddFciServerCommand(CommandLine& line) {
+  auto options = std::make_shared<ServerCommand>();
+  CLI::App* const server = line.app.add_subcommand(
+      "fci-server", "Simulate a Franka Panda behind its own network protocol");
+  server->add_option("--address", options->server.address,
+                     "Where to listen, an address of this machine [127.0.0.1]; the port is 1337");
+  server
+      ->add_option("--clock", options->clock,
+                   "lockstep: wait for each answer, as fast as it goes; wall: 1 kHz [lockstep]")
+      ->check(CLI::IsMember({"lockstep", "wall"}));
+  server
+      ->add_option("--grace", options->server.grace_s,
+                   "In lock-step, how long to wait for an answer before it is lost [s] [1]")
+      ->check(NumberFrom(0.001, 3600.0));
+  server
+      ->add_option("--q-start", options->q_start,
+                   "Where the arm is at first: seven angles [rad] [the scenario's, or home]")
+      ->delimiter(',')
+      ->expected(7);
+  server->add_option("--scenario", options->scenario,
+                     "Whose things stand and move around the arm; a name or a path");
+  server->add_option("--set", options->settings, "KEY=VALUE of the scenario, as for `sidestep run`")
+      ->allow_extra_args(false);
+  server->add_option("--faults", options->faults, "FILE.yaml of what goes wrong, and when");
+  server->add_flag("--once", options->server.once, "End with the first client");
+  server->footer(
+      "Speaks protocol version 5, that of libfranka 0.9: joint positions, joint velocities and\n"
+      "torques. The world stands still until the first command of the first motion, and while the\n"
+      "arm rests; times count from there. docs/hardware.md tells what is checked, and by which\n"
+      "source.");
+  server->callback([&line, options] { line.exit_code = Serve(*options); });
+}
+
+}  // namespace sidestep::cli

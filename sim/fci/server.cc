@@ -1,0 +1,232 @@
+#include "sidestep/sim/fci/server.h"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <thread>
+#include <utility>
+
+namespace sidestep::sim::fci {
+namespace {
+
+using robot::fci::CommandLink;
+using robot::fci::DatagramPort;
+using robot::fci::Message;
+using robot::fci::RobotCommand;
+using std::chrono::microseconds;
+using Clock = std::chrono::steady_clock;
+
+constexpr microseconds kMillisecond(1000);
+constexpr microseconds kAskAgain(50000);  // how long to wait without a look at `stop`
+
+// One client, from its Connect to its end.
+class Session {
+ public:
+  Session(SimulatedPanda& panda, const ServerOptions& options, CommandLink link)
+      : panda_(panda), options_(options), link_(std::move(link)), states_(options.address) {}
+
+  /// @return an empty text, or why the client was not taken.
+  std::string Connect(const std::function<bool()>& stop);
+  void Run(const std::function<bool()>& stop);
+
+ private:
+  void HandleRequests();
+  bool SendState();
+  void SendReplies();
+  std::optional<RobotCommand> ReceiveAnswer();
+  std::optional<RobotCommand> AwaitAnswer(Clock::time_point until);
+  void StepLocked();
+  void StepByTheWall();
+  microseconds PatienceBeforeTheFirst();
+
+  SimulatedPanda& panda_;
+  const ServerOptions& options_;
+  CommandLink link_;
+  DatagramPort states_;
+  std::uint64_t state_id_ = 0;  // of the latest state sent
+  bool answered_last_ = true;
+  int unanswered_ = 0;  // states of a motion before its first command
+  Clock::time_point next_tick_ = Clock::now(), motion_since_ = Clock::now();
+};
+
+std::string Session::Connect(const std::function<bool()>& stop) {
+  std::optional<Message> request;
+  while (!(request = link_.Receive())) {
+    if (stop()) return "";
+    robot::fci::WaitToRead({link_.fd()}, kAskAgain);
+  }
+  const auto size = robot::fci::PayloadSize(robot::fci::Request::kConnect);
+  if (request->request != robot::fci::Request::kConnect || request->payload.size() != size) {
+    return "it did not begin with Connect";
+  }
+  const auto wanted = robot::fci::FromBytes<robot::fci::ConnectRequest>(request->payload);
+  const bool fits = wanted.version == options_.version;
+  const std::uint8_t status =
+      fits ? robot::fci::status::kSuccess : robot::fci::status::kIncompatibleLibraryVersion;
+  link_.Send({request->request, request->id, robot::fci::ConnectReply(status, options_.version)});
+  if (!fits) {
+    return "it speaks version " + std::to_string(wanted.version) + ", not " +
+           std::to_string(options_.version);
+  }
+  states_.SetPeer(link_.peer_address(), wanted.udp_port);
+  return "";
+}
+
+void Session::HandleRequests() {
+  while (const auto request = link_.Receive()) {
+    const auto reply = panda_.Handle(*request);
+    if (reply) link_.Send(*reply);
+    if (!panda_.awaits_first_command()) continue;
+    unanswered_ = 0;
+    answered_last_ = true;
+    motion_since_ = Clock::now();
+  }
+}
+
+// False where the network loses it.
+bool Session::SendState() {
+  if (panda_.loses_states()) return false;
+  const robot::fci::RobotState state = panda_.State();
+  state_id_ = state.message_id;
+  states_.Send(robot::fci::Encode(state));
+  return true;
+}
+
+void Session::SendReplies() {
+  for (const Message& reply : panda_.TakeReplies()) link_.Send(reply);
+}
+
+// The latest command that is in time, of all that have arrived.
+std::optional<RobotCommand> Session::ReceiveAnswer() {
+  std::optional<RobotCommand> answer;
+  while (const auto bytes = states_.Receive(robot::fci::kRobotCommandSize)) {
+    const RobotCommand command = robot::fci::DecodeRobotCommand(*bytes);
+    if (PacketLoss::IsInTime(command.message_id, state_id_)) answer = command;
+  }
+  return answer;
+}
+
+// Meanwhile requests are answered; one of them may end the motion.
+std::optional<RobotCommand> Session::AwaitAnswer(Clock::time_point until) {
+  for (;;) {
+    HandleRequests();
+    if (!panda_.awaits_command()) return std::nullopt;
+    if (auto answer = ReceiveAnswer()) return answer;
+    const auto left = std::chrono::duration_cast<microseconds>(until - Clock::now());
+    if (left.count() <= 0) return std::nullopt;
+    robot::fci::WaitToRead({link_.fd(), states_.fd()}, left);
+  }
+}
+
+// libfranka reads two states of a new motion before it answers one. The second one follows soon;
+// more would be in the way of a client that is only slow, so they take ever longer to come.
+microseconds Session::PatienceBeforeTheFirst() {
+  constexpr microseconds kFirst(2000), kLongest(200000);
+  return std::min(kLongest, kFirst * (1 << std::min(5 * unanswered_++, 20)));
+}
+
+void Session::StepLocked() {
+  if (!panda_.awaits_command()) {
+    if (!panda_.is_stopping()) {
+      robot::fci::WaitToRead({link_.fd()}, kMillisecond);
+      HandleRequests();
+      if (panda_.awaits_command()) return;
+    }
+    panda_.Tick(std::nullopt);
+    return;
+  }
+  const bool is_first = panda_.awaits_first_command();
+  const auto grace = microseconds(static_cast<std::int64_t>(options_.grace_s * 1e6));
+  const microseconds patience =
+      is_first ? PatienceBeforeTheFirst() : (answered_last_ ? grace : kMillisecond);
+  const auto answer = AwaitAnswer(Clock::now() + patience);
+  if (!panda_.awaits_command()) return;  // a request has ended it
+  if (!is_first) answered_last_ = answer.has_value();
+  if (is_first && !answer && Clock::now() - motion_since_ > grace + kMillisecond) {
+    panda_.LoseClient();
+  }
+  panda_.Tick(answer);
+}
+
+void Session::StepByTheWall() {
+  next_tick_ = std::max(next_tick_ + kMillisecond, Clock::now());
+  std::optional<RobotCommand> answer;
+  for (;;) {
+    HandleRequests();
+    if (!answer) answer = ReceiveAnswer();
+    const auto left = std::chrono::duration_cast<microseconds>(next_tick_ - Clock::now());
+    if (left.count() <= 0) break;
+    robot::fci::WaitToRead({link_.fd(), states_.fd()}, left);
+  }
+  if (!answer) answer = ReceiveAnswer();
+  constexpr std::chrono::seconds kLongest(1);
+  if (panda_.awaits_first_command() && !answer && Clock::now() - motion_since_ > kLongest) {
+    panda_.LoseClient();
+  }
+  panda_.Tick(answer);
+}
+
+void Session::Run(const std::function<bool()>& stop) {
+  auto asked = Clock::now();
+  for (;;) {
+    if (Clock::now() - asked > kAskAgain) {
+      if (stop()) return;
+      asked = Clock::now();
+    }
+    if (panda_.TakeLinkCut()) throw robot::fci::LinkClosed("the network is cut");
+    // In lock-step a stop is over before anything else is heard: what a client finds after it does
+    // not depend on when it asks.
+    const bool hears = options_.clock == ServerClock::kWall || !panda_.is_stopping();
+    if (hears) HandleRequests();
+    if (!SendState()) {
+      panda_.Tick(std::nullopt);
+      continue;
+    }
+    SendReplies();
+    if (options_.clock == ServerClock::kLockStep) {
+      StepLocked();
+    } else {
+      StepByTheWall();
+    }
+  }
+}
+
+}  // namespace
+
+Server::Server(SimulatedPanda* panda, const ServerOptions& options)
+    : panda_(*panda), options_(options), listener_(options.address, robot::fci::kCommandPort) {}
+
+void Server::Tell(const std::string& what) const {
+  if (tell_) tell_(what);
+}
+
+void Server::Serve(CommandLink link, const std::function<bool()>& stop) {
+  Tell("connected from " + link.peer_address());
+  try {
+    Session session(panda_, options_, std::move(link));
+    const std::string refusal = session.Connect(stop);
+    if (!refusal.empty()) {
+      Tell("client refused: " + refusal);
+      return;
+    }
+    session.Run(stop);
+  } catch (const robot::fci::LinkError& error) {
+    Tell(std::string("disconnected: ") + error.what());
+  }
+  // The arm comes to rest without a client, too.
+  panda_.LoseClient();
+  while (panda_.is_stopping()) panda_.Tick(std::nullopt);
+  panda_.TakeReplies();
+}
+
+void Server::Run(const std::function<bool()>& stop) {
+  while (!stop()) {
+    robot::fci::WaitToRead({listener_.fd()}, kAskAgain);
+    auto link = listener_.Accept();
+    if (!link) continue;
+    Serve(std::move(*link), stop);
+    if (options_.once) return;
+  }
+}
+
+}  // namespace sidestep::sim::fci
