@@ -126,13 +126,16 @@ microseconds Session::PatienceBeforeTheFirst() {
 }
 
 void Session::StepLocked() {
+  if (panda_.is_stopping()) {
+    // A stop is over before anything else is heard or seen: what a client finds after it does not
+    // depend on when it looks.
+    while (panda_.is_stopping()) panda_.Tick(std::nullopt);
+    return;
+  }
   if (!panda_.awaits_command()) {
-    if (!panda_.is_stopping()) {
-      robot::fci::WaitToRead({link_.fd()}, kMillisecond);
-      HandleRequests();
-      if (panda_.awaits_command()) return;
-    }
-    panda_.Tick(std::nullopt);
+    robot::fci::WaitToRead({link_.fd()}, kMillisecond);
+    HandleRequests();
+    if (!panda_.awaits_command()) panda_.Tick(std::nullopt);
     return;
   }
   const bool is_first = panda_.awaits_first_command();
@@ -174,10 +177,7 @@ void Session::Run(const std::function<bool()>& stop) {
       asked = Clock::now();
     }
     if (panda_.TakeLinkCut()) throw robot::fci::LinkClosed("the network is cut");
-    // In lock-step a stop is over before anything else is heard: what a client finds after it does
-    // not depend on when it asks.
-    const bool hears = options_.clock == ServerClock::kWall || !panda_.is_stopping();
-    if (hears) HandleRequests();
+    HandleRequests();
     if (!SendState()) {
       panda_.Tick(std::nullopt);
       continue;

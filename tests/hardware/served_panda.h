@@ -1,0 +1,58 @@
+#pragma once
+
+#include <unistd.h>
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "sidestep/sim/fci/panda_world.h"
+#include "sidestep/sim/fci/server.h"
+
+namespace sidestep::hardware {
+
+/// An address of the loopback that no other process of the tests uses: the port is fixed, and all
+/// of 127.0.0.0/8 is this machine.
+inline std::string OwnLoopback() {
+  const auto pid = static_cast<unsigned>(getpid());
+  return "127." + std::to_string(1 + (pid >> 16 & 0x3f)) + "." + std::to_string(pid >> 8 & 0xff) +
+         "." + std::to_string(pid & 0xff);
+}
+
+/// A simulated Panda on the loopback, served by a thread of its own while this lives.
+class ServedPanda {
+ public:
+  explicit ServedPanda(const std::string& faults = "", sim::fci::ServerOptions options = {},
+                       const scenarios::Scenario& scenario = sim::fci::PandaAlone())
+      : robot_(robot::RobotModel::Load(kModels, "panda", scenario.X_WB)),
+        world_(sim::fci::MakePandaWorld(scenario, robot_, kModels,
+                                        robot_.configurations().at("home"))),
+        plant_(robot_, world_.get()) {
+    const auto script = sim::fci::ParseFaultScript(faults.empty() ? "{}" : faults, "faults.yaml");
+    panda_ = std::make_unique<sim::fci::SimulatedPanda>(&plant_, script);
+    options.address = OwnLoopback();
+    options.version = script.version;
+    server_ = std::make_unique<sim::fci::Server>(panda_.get(), options);
+    thread_ = std::thread([this] { server_->Run([this] { return stop_.load(); }); });
+  }
+  ~ServedPanda() {
+    stop_ = true;
+    thread_.join();
+  }
+
+  std::string address() const { return OwnLoopback(); }
+  const robot::RobotModel& robot() const { return robot_; }
+
+ private:
+  static constexpr const char* kModels = SIDESTEP_SOURCE_DIR "/models";
+  robot::RobotModel robot_;
+  std::unique_ptr<sim::World> world_;
+  sim::fci::PandaPlant plant_;
+  std::unique_ptr<sim::fci::SimulatedPanda> panda_;
+  std::unique_ptr<sim::fci::Server> server_;
+  std::atomic<bool> stop_ = false;
+  std::thread thread_;
+};
+
+}  // namespace sidestep::hardware
