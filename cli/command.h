@@ -24,6 +24,7 @@ void AddStudyCommand(CommandLine& line);
 void AddDoctorCommand(CommandLine& line);
 void AddFieldCommand(CommandLine& line);
 void AddFciServerCommand(CommandLine& line);
+void AddHardwareCommand(CommandLine& line);
 void AddManualCommand(CommandLine& line);
 
 }  // namespace sidestep::cli

@@ -58,6 +58,7 @@ int Run(int argc, char** argv) {
   sidestep::cli::AddListCommand(line);
   sidestep::cli::AddDoctorCommand(line);
   sidestep::cli::AddFieldCommand(line);
+  sidestep::cli::AddHardwareCommand(line);
   sidestep::cli::AddFciServerCommand(line);
   sidestep::cli::AddManualCommand(line);
   if (argc > 1 && argv[1][0] != '-') CheckCommandName(line.app, argv[1]);

@@ -10,6 +10,7 @@
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/provenance.h"
+#include "sidestep/cli/run_summary.h"
 #include "sidestep/cli/scenario_options.h"
 #include "sidestep/cli/stop_signals.h"
 #include "sidestep/cli/versions.h"
@@ -28,55 +29,6 @@ struct RunOptions {
   std::string out;
   bool json = false;
 };
-
-// What planning took beside what it was charged.
-void PrintPlanningTime(const bench::EpisodeResult& result, const scenarios::Scenario& scenario) {
-  const std::vector<double>& cycle_s = result.times.at("cycle");
-  if (cycle_s.empty()) {
-    Print("planning cycle   - (there was none)\n");
-    return;
-  }
-  Print("planning cycle   {:.1f} ms CPU (median of {}), ", 1e3 * bench::Quantile(cycle_s, 0.5),
-        cycle_s.size());
-  switch (scenario.latency) {
-    case scenarios::Latency::kCharged:
-      Print("charged {:.1f} ms; {} took longer\n", 1e3 * scenario.latency_s,
-            result.cycles_over_charge);
-      break;
-    case scenarios::Latency::kMeasured:
-      Print("charged as measured: no two such runs are alike\n");
-      break;
-    case scenarios::Latency::kNone:
-      Print("charged nothing\n");
-      break;
-  }
-  if (result.late_plans > 0) Print("late plans       {}, dropped\n", result.late_plans);
-}
-
-void PrintSummary(const bench::EpisodeResult& result, const scenarios::Scenario& scenario,
-                  const std::string& out) {
-  const auto& metrics = result.recording.metrics;
-  const auto number = [&](const char* name, double scale, const char* format) {
-    return FiniteText(format, scale * metrics.at(name));
-  };
-  Print("outcome          {}\n", bench::Tell(result.outcome, bench::TouchedBy(result.recording)));
-  if (!result.reason.empty()) Print("reason           {}\n", result.reason);
-  Print("first contact    {}\n", number("first_contact_s", 1, "{:.3f} s"));
-  Print("least clearance  {}\n", number("min_clearance_m", 1e3, "{:.1f} mm"));
-  Print("time to goal     {}\n", number("time_to_goal_s", 1, "{:.3f} s"));
-  if (scenario.dwell_s > 0) {
-    Print("dwell of {:<7}  {}\n", fmt::format("{:g} s", scenario.dwell_s),
-          number("time_to_dwell_s", 1, "over at {:.3f} s"));
-  }
-  Print("GP cost          {}\n", number("gp_cost", 1, "{:.2f}"));
-  Print("jerk RMS         {}\n", number("jerk_rms", 1, "{:.1f} rad/s^3"));
-  if (metrics.at("samples_outside_grid") > 0) {
-    Print("outside the map  {} places of planned motion: nothing is seen there\n",
-          metrics.at("samples_outside_grid"));
-  }
-  PrintPlanningTime(result, scenario);
-  Print("written          {}/result.json, {}/trace.h5\n", out, out);
-}
 
 int Run(const RunOptions& options) {
   const DataPaths paths = FindDataPaths();
@@ -126,8 +78,9 @@ void AddRunCommand(CommandLine& line) {
          "What a planning cycle takes: charged (always the same), measured (the CPU time it "
          "needs; no two runs are alike), none")
       ->check(CLI::IsMember({"charged", "measured", "none"}));
-  run->add_option("--safety", overrides.safety,
-                  "Of the robot's supervisor: off, observe (write down what lab would do), lab (act)")
+  run->add_option(
+         "--safety", overrides.safety,
+         "Of the robot's supervisor: off, observe (write down what lab would do), lab (act)")
       ->check(CLI::IsMember({"off", "observe", "lab"}));
   run->add_option(
          "--clock", options->clock,

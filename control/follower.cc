@@ -95,7 +95,7 @@ Command Follower::Tick(const Measured& measured, HorizonOffset period) noexcept 
     mode = robot::RobotMode::kHolding;  // once something has begun, only a stop leaves nothing
   }
   mode_.store(mode, std::memory_order_relaxed);
-  log_.Append({measured.t, measured.q, measured.v, command.motion});
+  log_.Append({measured.t, measured.q, measured.v, measured.torque, command.motion});
   return command;
 }
 

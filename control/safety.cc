@@ -1,5 +1,7 @@
 #include "sidestep/control/safety.h"
 
+#include "sidestep/core/number_text.h"
+
 namespace sidestep::control {
 
 const char* ToString(SafetyCheck check) {
@@ -32,6 +34,11 @@ const char* ToString(SafetyCheck check) {
       return "obstacle_too_fast";
   }
   return "";
+}
+
+std::string Describe(const Finding& finding) {
+  return std::string(ToString(finding.check)) + " of " + FiniteText("{:.3g}", finding.value) +
+         ", allowed " + FiniteText("{:.3g}", finding.limit);
 }
 
 const char* ToString(Reaction reaction) {

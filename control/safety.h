@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "sidestep/control/joint_vector.h"
 #include "sidestep/core/time.h"
 
@@ -48,6 +50,9 @@ struct Finding {
   Reaction reaction = Reaction::kNone;
   double value = 0, limit = 0;  ///< what was measured, and what it may be; units as the check's
 };
+
+/// "clearance of 0.043, allowed 0.05".
+std::string Describe(const Finding& finding);
 
 /// The bounds. Defaults are common practice; docs/safety.md tells the reason of each.
 struct SafetySettings {

@@ -11,6 +11,7 @@ struct Measured {
   JointVector q, v;      ///< as measured, shape n
   JointPoint commanded;  ///< the motion that it was last told, as it understood it
 
+  JointVector torque{};     ///< [N m] of the motors, shape n; empty: not known
   JointVector tau_ext{};    ///< [N m] what pushes from outside, shape n; empty: not known
   double success_rate = 1;  ///< of the latest packets, 0 to 1
   int lost_in_a_row = 0;    ///< packets, until now
@@ -25,7 +26,7 @@ struct Command {
 /// One tick, as it is logged: what was measured at its beginning and what was commanded then.
 struct TickRecord {
   EpisodeTime t;
-  JointVector q, v;
+  JointVector q, v, torque;
   JointPoint command;
 };
 

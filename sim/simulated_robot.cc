@@ -3,8 +3,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sidestep/core/number_text.h"
-
 namespace sidestep::sim {
 namespace {
 
@@ -60,7 +58,11 @@ void SimulatedRobot::AdvanceTo(EpisodeTime t) {
 
 void SimulatedRobot::Tick() {
   constexpr HorizonOffset kPeriod(1.0 / World::kTicksPerSecond);
-  const control::Measured measured = {world_.time(), world_.q(), world_.v(), commanded_};
+  control::Measured measured;
+  measured.t = world_.time();
+  measured.q = world_.q();
+  measured.v = world_.v();
+  measured.commanded = commanded_;
   commanded_ = follower_.Tick(measured, kPeriod).motion;
   const Eigen::VectorXd torque = stiffness_.cwiseProduct(commanded_.q - measured.q) +
                                  damping_.cwiseProduct(commanded_.v - measured.v) +
@@ -73,10 +75,7 @@ void SimulatedRobot::Tick() {
   follower_.DrainFindings([this](const control::Finding& found) {
     safety_events_.push_back({found.t, control::ToString(found.check),
                               control::ToString(found.reaction), found.value, found.limit});
-    if (found.reaction == control::Reaction::kBrake) {
-      why_ = std::string(control::ToString(found.check)) + " of " +
-             FiniteText("{:.3g}", found.value) + ", allowed " + FiniteText("{:.3g}", found.limit);
-    }
+    if (found.reaction == control::Reaction::kBrake) why_ = control::Describe(found);
   });
   after_tick_();
 }

@@ -5,6 +5,7 @@
 #include "sidestep/sim/mujoco_model.h"
 #include "sidestep/sim/no_robot.h"
 #include "sidestep/sim/robot_agreement.h"
+#include "sidestep/sim/safety_of.h"
 #include "sidestep/sim/sensors.h"
 #include "sidestep/sim/simulated_robot.h"
 #include "sidestep/sim/world_xml.h"
@@ -27,29 +28,6 @@ std::vector<std::string> NamesOf(const std::vector<scenarios::MovingObstacle>& o
   std::vector<std::string> names;
   for (const scenarios::MovingObstacle& obstacle : obstacles) names.push_back(obstacle.name);
   return names;
-}
-
-control::SafetySettings SafetyOf(const scenarios::Scenario& scenario,
-                                 const robot::RobotModel& robot) {
-  control::SafetySettings safety;
-  switch (scenario.safety.profile) {
-    case scenarios::SafetyProfile::kOff:
-      return safety;
-    case scenarios::SafetyProfile::kObserve:
-      safety.profile = control::SafetyProfile::kObserve;
-      break;
-    case scenarios::SafetyProfile::kLab:
-      safety.profile = control::SafetyProfile::kLab;
-      break;
-  }
-  if (robot.capsules().empty()) {
-    throw scenarios::WrongValue(scenario, "safety.profile",
-                                robot.name() + " has no capsules to be supervised by");
-  }
-  safety.obstacle_speed_m_s = scenario.safety.obstacle_speed_m_s;
-  safety.obstacle_acceleration_m_s2 = scenario.safety.obstacle_acceleration_m_s2;
-  safety.floor_m = scenario.floor_m;
-  return safety;
 }
 
 // Compiles the world. What is wrong with the robot's own file is told with its lines: those of the

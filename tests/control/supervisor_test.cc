@@ -64,7 +64,7 @@ class Scene {
     for (; ticks_ < std::lround(t_s / kTick_s); ++ticks_) {
       const EpisodeTime t(static_cast<double>(ticks_) * kTick_s);
       if (ticks_ % 10 == 0) follower_.Watch(see(t));
-      Measured measured{t, state_.q, state_.v, state_, {}, 1, 0, true};
+      Measured measured{t, state_.q, state_.v, state_};
       disturb(measured);
       const int allocations = CountAllocations().count;
       state_ = follower_.Tick(measured, HorizonOffset(kTick_s)).motion;

@@ -1,0 +1,26 @@
+#include "sidestep/cli/panda_connection.h"
+
+#include "sidestep/core/input_error.h"
+#include "sidestep/hardware/raw_fci_driver.h"
+
+namespace sidestep::cli {
+
+bool IsLoopback(const std::string& address) {
+  return address == "localhost" || address.starts_with("127.");
+}
+
+std::unique_ptr<hardware::FciDriver> ConnectPanda(const std::string& address) {
+  if (!IsLoopback(address)) {
+    throw InputError("--robot", "'" + address +
+                                    "' is not on this machine, and a real robot needs libfranka, "
+                                    "which this program was built without: docs/hardware.md");
+  }
+  const std::string numeric = address == "localhost" ? "127.0.0.1" : address;
+  try {
+    return std::make_unique<hardware::RawFciDriver>(numeric);
+  } catch (const hardware::FciError& error) {
+    throw InputError("--robot", error.what());
+  }
+}
+
+}  // namespace sidestep::cli

@@ -1,0 +1,72 @@
+#include "sidestep/cli/run_summary.h"
+
+#include <vector>
+
+#include "sidestep/bench/outcome.h"
+#include "sidestep/bench/statistics.h"
+#include "sidestep/cli/console.h"
+#include "sidestep/core/number_text.h"
+
+namespace sidestep::cli {
+namespace {
+
+// What planning took beside what it was charged.
+void PrintPlanningTime(const bench::EpisodeResult& result, const scenarios::Scenario& scenario) {
+  const std::vector<double>& cycle_s = result.times.at("cycle");
+  if (cycle_s.empty()) {
+    Print("planning cycle   - (there was none)\n");
+    return;
+  }
+  Print("planning cycle   {:.1f} ms CPU (median of {}), ", 1e3 * bench::Quantile(cycle_s, 0.5),
+        cycle_s.size());
+  switch (scenario.latency) {
+    case scenarios::Latency::kCharged:
+      Print("charged {:.1f} ms; {} took longer\n", 1e3 * scenario.latency_s,
+            result.cycles_over_charge);
+      break;
+    case scenarios::Latency::kMeasured:
+      Print("charged as measured: no two such runs are alike\n");
+      break;
+    case scenarios::Latency::kNone:
+      Print("charged nothing\n");
+      break;
+  }
+  if (result.late_plans > 0) Print("late plans       {}, dropped\n", result.late_plans);
+}
+
+}  // namespace
+
+void PrintOutcome(const bench::EpisodeResult& result, const scenarios::Scenario& scenario) {
+  const auto& metrics = result.recording.metrics;
+  const auto number = [&](const char* name, double scale, const char* format) {
+    return FiniteText(format, scale * metrics.at(name));
+  };
+  Print("outcome          {}\n", bench::Tell(result.outcome, bench::TouchedBy(result.recording)));
+  if (!result.reason.empty()) Print("reason           {}\n", result.reason);
+  Print("first contact    {}\n", number("first_contact_s", 1, "{:.3f} s"));
+  Print("least clearance  {}\n", number("min_clearance_m", 1e3, "{:.1f} mm"));
+  Print("time to goal     {}\n", number("time_to_goal_s", 1, "{:.3f} s"));
+  if (scenario.dwell_s > 0) {
+    Print("dwell of {:<7}  {}\n", fmt::format("{:g} s", scenario.dwell_s),
+          number("time_to_dwell_s", 1, "over at {:.3f} s"));
+  }
+  Print("GP cost          {}\n", number("gp_cost", 1, "{:.2f}"));
+  Print("jerk RMS         {}\n", number("jerk_rms", 1, "{:.1f} rad/s^3"));
+  if (metrics.at("samples_outside_grid") > 0) {
+    Print("outside the map  {} places of planned motion: nothing is seen there\n",
+          metrics.at("samples_outside_grid"));
+  }
+  PrintPlanningTime(result, scenario);
+  if (!result.safety_events.empty()) {
+    Print("supervisor       {} findings, the first at {:.3f} s: {}\n", result.safety_events.size(),
+          result.safety_events.front().t.seconds(), result.safety_events.front().check);
+  }
+}
+
+void PrintSummary(const bench::EpisodeResult& result, const scenarios::Scenario& scenario,
+                  const std::string& out) {
+  PrintOutcome(result, scenario);
+  Print("written          {}/result.json, {}/trace.h5\n", out, out);
+}
+
+}  // namespace sidestep::cli
