@@ -171,6 +171,7 @@ void SimulatedPanda::BeginMove(const Message& request, Message& reply) {
   has_begun_ = false;
   settle_ticks_ = 0;
   loss_ = PacketLoss();
+  lost_commands_ = lost_states_ = 0;
   tau_d_ = {};
   const bool by_position = modes_.motion_generator() == MotionGenerator::kJointPosition;
   Tell(std::string("motion started: joint ") + (by_position ? "positions" : "velocities") +
@@ -275,6 +276,8 @@ void SimulatedPanda::Tick(const std::optional<RobotCommand>& command) {
       FollowCommand(*command);
     } else if (has_begun_) {
       FollowNothing();
+    } else {
+      return;  // the motion's first command is lost: it has not begun
     }
   } else if (!IsAtRest(reference_)) {
     reference_ = Brake(reference_, plant_.limits());

@@ -206,8 +206,8 @@ TEST(Help, NamesEveryCommandAndTheExitCodes) {
   const Finished finished = Sidestep({"--help"});
   EXPECT_EQ(finished.exit_code, 0);
   EXPECT_THAT(finished.out, HasSubstr("Exit codes"));
-  for (const std::string command :
-       {"run", "compare", "render", "list", "doctor", "reproduce", "study", "audit", "field"}) {
+  for (const std::string command : {"run", "compare", "render", "list", "doctor", "reproduce",
+                                    "study", "audit", "field", "fci-server"}) {
     EXPECT_THAT(finished.out, HasSubstr("\n  " + command + " "));
     const Finished help = Sidestep({command, "--help"});
     EXPECT_EQ(help.exit_code, 0);

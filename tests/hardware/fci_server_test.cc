@@ -47,6 +47,8 @@ class Swing {
   Joints start_{};
 };
 
+constexpr int kFarTooLong = 200000;  // ms: where a motion that must be ended by others ends
+
 // Runs a motion that must fail.
 FciError FailureOf(FciDriver& driver, CommandKind kind, const FciDriver::NextCommand& next) {
   try {
@@ -259,6 +261,7 @@ INSTANTIATE_TEST_SUITE_P(
     Losses, Harmless,
     testing::Values(
         "faults: [{kind: lose_commands, at_s: 1, count: 19}]",
+        "faults: [{kind: lose_commands, at_s: 0, count: 30}]",  // the motion has not begun
         "faults: [{kind: lose_states, at_s: 1, count: 8}]",
         "faults: [{kind: lose_some, at_s: 0.5, for_s: 0.5, rate: 0.05}]",
         "faults: [{kind: tracking_offset, at_s: 1, for_s: 1, joint: 2, offset_rad: 0.002}]",
@@ -278,6 +281,23 @@ TEST(FciServer, ShowsLostStatesAsAGapAndInTheSuccessRate) {
   });
   EXPECT_EQ(longest, 9);
   EXPECT_NEAR(least, 0.92, 1e-9);
+}
+
+TEST(FciServer, TurnsAwayWhoDoesNotSpeakItsProtocol) {
+  const ServedPanda panda;
+  {
+    auto link = robot::fci::CommandLink::Connect(panda.address(), robot::fci::kCommandPort,
+                                                 std::chrono::seconds(1));
+    link.Send({robot::fci::Request::kMove, 1, {}});
+    EXPECT_THROW(
+        {
+          robot::fci::WaitToRead({link.fd()}, std::chrono::seconds(10));
+          link.Receive();
+        },
+        robot::fci::LinkClosed);
+  }
+  const RawFciDriver driver(panda.address());
+  EXPECT_EQ(driver.server_version(), 5);
 }
 
 TEST(FciServer, IsStoppedByTheUserAndFreeAgainAfterwards) {
@@ -366,7 +386,7 @@ TEST(FciServer, LosesAClientThatThinksTooLong) {
   const FciError error =
       FailureOf(driver, CommandKind::kPositions, [&](const RobotSnapshot& state, int) {
         if (++calls == 100) std::this_thread::sleep_for(std::chrono::milliseconds(500));
-        return Command{state.q_d};
+        return Command{state.q_d, calls == kFarTooLong};
       });
   EXPECT_EQ(robot::fci::Text(error.errors()), kLost);
 }
@@ -378,7 +398,7 @@ TEST(FciServer, StopsFromInsideAndFromAnotherThread) {
   EXPECT_EQ(FailureOf(driver, CommandKind::kPositions,
                       [&](const RobotSnapshot& state, int) {
                         if (++calls == 300) driver.Stop();
-                        return Command{state.q_d};
+                        return Command{state.q_d, calls == kFarTooLong};
                       })
                 .kind(),
             Kind::kPreempted);
@@ -392,7 +412,7 @@ TEST(FciServer, StopsFromInsideAndFromAnotherThread) {
   EXPECT_EQ(FailureOf(driver, CommandKind::kPositions,
                       [&](const RobotSnapshot& state, int) {
                         runs = true;
-                        return Command{state.q_d};
+                        return Command{state.q_d, ++calls == kFarTooLong};
                       })
                 .kind(),
             Kind::kPreempted);
