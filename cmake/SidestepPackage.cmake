@@ -17,6 +17,11 @@ install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONE
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/sidestep)
 install(EXPORT sidestep-targets NAMESPACE sidestep:: DESTINATION ${package_dir}
         COMPONENT development)
+get_property(franka_target GLOBAL PROPERTY SIDESTEP_FRANKA)
+set(SIDESTEP_FIND_FRANKA)
+if(franka_target)
+  set(SIDESTEP_FIND_FRANKA "find_dependency(Franka 0.9)")
+endif()
 configure_package_config_file(
   cmake/sidestep-config.cmake.in ${PROJECT_BINARY_DIR}/sidestep-config.cmake
   INSTALL_DESTINATION ${package_dir} NO_SET_AND_CHECK_MACRO)

@@ -1,8 +1,5 @@
 #include "sidestep/hardware/raw_fci_driver.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace sidestep::hardware {
 namespace {
 
@@ -38,11 +35,6 @@ bool Moves(const fci::RobotState& state) {
          state.motion_generator != fci::MotionGenerator::kIdle;
 }
 
-bool IsFinite(const Command& command) {
-  return std::all_of(command.values.begin(), command.values.end(),
-                     [](double value) { return std::isfinite(value); });
-}
-
 void CheckReply(fci::Request request, std::uint8_t status) {
   if (status == fci::status::kSuccess) return;
   const bool bad_value = status == fci::status::kInvalidArgument;
@@ -55,18 +47,6 @@ void CheckReply(fci::Request request, std::uint8_t status) {
 constexpr std::array<double, 3> kDeviation = {10.0, 3.12, 6.28};
 
 }  // namespace
-
-void RawFciDriver::Log::Add(const RobotSnapshot& state, const Command& command) {
-  ring_[count_++ % kSize] = {state, command};
-}
-
-std::vector<ExchangeRecord> RawFciDriver::Log::InOrder() const {
-  std::vector<ExchangeRecord> records;
-  for (std::size_t i = count_ - std::min(count_, kSize); i < count_; ++i) {
-    records.push_back(ring_[i % kSize]);
-  }
-  return records;
-}
 
 RobotSnapshot RawFciDriver::ReadOnce() { return SnapshotOf(client_.AwaitFreshState()); }
 
@@ -98,13 +78,23 @@ void RawFciDriver::Control(CommandKind kind, const NextCommand& next) {
   const std::uint32_t move_id = Start(kind);
   try {
     Run(move_id, kind, next);
-  } catch (...) {
-    // Of a motion that the robot has ended, this asks for nothing.
-    try {
-      Stop();
-    } catch (const FciError&) {
+  } catch (const FciError& error) {
+    if (error.kind() == FciError::Kind::kNetwork) {
+      throw FciError(error.kind(), error.what(), {}, log_.InOrder());
     }
+    StopAnyhow();
     throw;
+  } catch (...) {
+    StopAnyhow();
+    throw;
+  }
+}
+
+// Of a motion that the robot has ended, this asks for nothing.
+void RawFciDriver::StopAnyhow() noexcept {
+  try {
+    Stop();
+  } catch (const FciError&) {
   }
 }
 
@@ -122,13 +112,8 @@ void RawFciDriver::Run(std::uint32_t move_id, CommandKind kind, const NextComman
   Command command;
   while (Moves(state)) {
     if (!command.finished) {
-      const RobotSnapshot snapshot = SnapshotOf(state);
-      command = next(snapshot, static_cast<int>(state.message_id - previous_ms));
-      if (!IsFinite(command)) {
-        throw FciError(FciError::Kind::kBadCommand, "the command holds what is no number", {},
-                       log_.InOrder());
-      }
-      log_.Add(snapshot, command);
+      command = NextAnswer(next, SnapshotOf(state),
+                           static_cast<int>(state.message_id - previous_ms), log_);
       previous_ms = state.message_id;
     }
     Answer(state, kind, command);

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
+#include <cstdint>
 #include <string>
-#include <vector>
 
+#include "sidestep/hardware/exchange_log.h"
 #include "sidestep/hardware/fci_client.h"
 #include "sidestep/hardware/fci_driver.h"
 
@@ -26,26 +25,14 @@ class RawFciDriver final : public FciDriver {
   void Recover() override;
 
  private:
-  /// The last exchanges, in a ring: nothing is allocated while a motion runs.
-  class Log {
-   public:
-    void Add(const RobotSnapshot& state, const Command& command);
-    void Clear() { count_ = 0; }
-    std::vector<ExchangeRecord> InOrder() const;
-
-   private:
-    static constexpr std::size_t kSize = 50;
-    std::array<ExchangeRecord, kSize> ring_{};
-    std::size_t count_ = 0;
-  };
-
   std::uint32_t Start(CommandKind kind);
+  void StopAnyhow() noexcept;
   void Run(std::uint32_t move_id, CommandKind kind, const NextCommand& next);
   void Answer(const robot::fci::RobotState& state, CommandKind kind, const Command& command);
   [[noreturn]] void ThrowEnd(std::uint8_t status, const robot::fci::ErrorSet& errors) const;
 
   FciClient client_;
-  Log log_;
+  ExchangeLog log_;
 };
 
 }  // namespace sidestep::hardware
