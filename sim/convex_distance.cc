@@ -1,7 +1,6 @@
 #include "sidestep/sim/convex_distance.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace sidestep::sim {
@@ -11,34 +10,6 @@ using Eigen::Vector3d;
 
 constexpr double kTolerance_m = 1e-9;
 constexpr int kMaxIterations = 1000;
-
-// The point of a core that is farthest along n.
-Vector3d Support(const ConvexSolid& solid, const Vector3d& n) {
-  const Vector3d& size = solid.size_m;
-  switch (solid.core) {
-    case ConvexSolid::Core::kPoint:
-      return Vector3d::Zero();
-    case ConvexSolid::Core::kSegment:
-      return {0, 0, std::copysign(size.z(), n.z())};
-    case ConvexSolid::Core::kBox:
-      return {std::copysign(size.x(), n.x()), std::copysign(size.y(), n.y()),
-              std::copysign(size.z(), n.z())};
-    case ConvexSolid::Core::kCylinder: {
-      const double across = std::hypot(n.x(), n.y());
-      const double scale = across > 0 ? size.x() / across : 0.0;
-      return {scale * n.x(), scale * n.y(), std::copysign(size.z(), n.z())};
-    }
-    case ConvexSolid::Core::kEllipsoid: {
-      const Vector3d stretched = size.cwiseProduct(n);
-      return size.cwiseProduct(stretched) / stretched.norm();
-    }
-    case ConvexSolid::Core::kHull:
-      return *std::max_element(
-          solid.vertices.begin(), solid.vertices.end(),
-          [&](const Vector3d& p, const Vector3d& q) { return n.dot(p) < n.dot(q); });
-  }
-  return Vector3d::Zero();
-}
 
 // A point of a core, its middle where that is the origin.
 Vector3d AnyPoint(const ConvexSolid& solid) {
@@ -102,7 +73,7 @@ Vector3d NearestToOrigin(Simplex* simplex) {
 
 }  // namespace
 
-double ConvexDistance(const ConvexSolid& a, const ConvexSolid& b, const Eigen::Isometry3d& X_AB) {
+double CoreDistance(const ConvexSolid& a, const ConvexSolid& b, const Eigen::Isometry3d& X_AB) {
   // v runs over differences of a point of core a and a point of core b, towards the shortest one.
   // It must begin with such a difference, or it may be shorter than all of them.
   Vector3d v = -(X_AB * AnyPoint(b) - AnyPoint(a));
@@ -111,7 +82,7 @@ double ConvexDistance(const ConvexSolid& a, const ConvexSolid& b, const Eigen::I
     const double length = v.norm();
     if (length < kTolerance_m) return 0;
     // No difference lies nearer to the origin than the plane through `w` across v.
-    const Vector3d w = Support(a, -v) - X_AB * Support(b, X_AB.linear().transpose() * v);
+    const Vector3d w = CoreSupport(a, -v) - X_AB * CoreSupport(b, X_AB.linear().transpose() * v);
     if (length - v.dot(w) / length <= kTolerance_m) break;
     simplex.points.col(simplex.size++) = w;
     const Vector3d next = NearestToOrigin(&simplex);
@@ -119,7 +90,11 @@ double ConvexDistance(const ConvexSolid& a, const ConvexSolid& b, const Eigen::I
     if (i > 0 && next.norm() >= length) break;  // as near as rounding allows
     v = next;
   }
-  return std::max(0.0, v.norm() - a.radius_m - b.radius_m);
+  return v.norm();
+}
+
+double ConvexDistance(const ConvexSolid& a, const ConvexSolid& b, const Eigen::Isometry3d& X_AB) {
+  return std::max(0.0, CoreDistance(a, b, X_AB) - a.radius_m - b.radius_m);
 }
 
 }  // namespace sidestep::sim

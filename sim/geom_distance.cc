@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "sidestep/sim/convex_depth.h"
 #include "sidestep/sim/convex_distance.h"
 #include "sidestep/sim/geom_solids.h"
 #include "sidestep/sim/mujoco_pose.h"
@@ -79,10 +80,11 @@ double ReachAgainst(const mjModel& model, const mjData& data, int geom,
   }
 }
 
-double PlaneDistance(const mjModel& model, const mjData& data, int plane, int geom) {
+// Less than 0 if they overlap.
+double HeightOver(const mjModel& model, const mjData& data, int plane, int geom) {
   const Eigen::Vector3d normal_W = GeomRotation(data, plane).col(2);
   const double height = normal_W.dot(GeomPosition(data, geom) - GeomPosition(data, plane));
-  return std::max(0.0, height - ReachAgainst(model, data, geom, normal_W));
+  return height - ReachAgainst(model, data, geom, normal_W);
 }
 
 }  // namespace
@@ -136,25 +138,46 @@ double GeomDistance::LowerBound(const mjData& data, int geom1, int geom2) const 
   return std::max(0.0, apart - radius1 - radius2);
 }
 
+const ConvexSolid& GeomDistance::ConvexFirst(int* geom1, int* geom2) const {
+  if (!convex_[static_cast<std::size_t>(*geom1)]) std::swap(*geom1, *geom2);
+  const std::optional<ConvexSolid>& convex = convex_[static_cast<std::size_t>(*geom1)];
+  if (!convex) throw std::invalid_argument("GeomDistance: one of two geoms must be convex");
+  return *convex;
+}
+
 double GeomDistance::Distance(const mjData& data, int geom1, int geom2) const {
-  if (!convex_[static_cast<std::size_t>(geom1)]) std::swap(geom1, geom2);
-  const std::optional<ConvexSolid>& convex1 = convex_[static_cast<std::size_t>(geom1)];
-  if (!convex1) throw std::invalid_argument("GeomDistance: one of two geoms must be convex");
+  const ConvexSolid& convex1 = ConvexFirst(&geom1, &geom2);
   if (model_.geom_type[geom2] == mjGEOM_PLANE) {
-    return PlaneDistance(model_, data, geom2, geom1);
+    return std::max(0.0, HeightOver(model_, data, geom2, geom1));
   }
   const Eigen::Isometry3d X_21 = GeomFrame(data, geom2).inverse() * GeomFrame(data, geom1);
   const std::optional<ConvexSolid>& convex2 = convex_[static_cast<std::size_t>(geom2)];
-  if (convex2) return ConvexDistance(*convex2, *convex1, X_21);
+  if (convex2) return ConvexDistance(*convex2, convex1, X_21);
 
   const Eigen::Vector3d centre = X_21.translation();
   double least = std::numeric_limits<double>::infinity();
   for (const Prism& prism : prisms_[static_cast<std::size_t>(geom2)]) {
     const Eigen::Vector3d nearest = centre.cwiseMax(prism.lower_m).cwiseMin(prism.upper_m);
     if ((nearest - centre).norm() - model_.geom_rbound[geom1] >= least) continue;
-    least = std::min(least, ConvexDistance(prism.solid, *convex1, X_21));
+    least = std::min(least, ConvexDistance(prism.solid, convex1, X_21));
   }
   return least;
+}
+
+double GeomDistance::Depth(const mjData& data, int geom1, int geom2) const {
+  const ConvexSolid& convex1 = ConvexFirst(&geom1, &geom2);
+  if (model_.geom_type[geom2] == mjGEOM_PLANE) {
+    return std::max(0.0, -HeightOver(model_, data, geom2, geom1));
+  }
+  const Eigen::Isometry3d X_21 = GeomFrame(data, geom2).inverse() * GeomFrame(data, geom1);
+  const std::optional<ConvexSolid>& convex2 = convex_[static_cast<std::size_t>(geom2)];
+  if (convex2) return ConvexDepth(*convex2, convex1, X_21);
+
+  double most = 0;
+  for (const Prism& prism : prisms_[static_cast<std::size_t>(geom2)]) {
+    most = std::max(most, ConvexDepth(prism.solid, convex1, X_21));
+  }
+  return most;
 }
 
 }  // namespace sidestep::sim

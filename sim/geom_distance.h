@@ -6,13 +6,13 @@
 #include <optional>
 #include <vector>
 
-#include "sidestep/sim/convex_distance.h"
+#include "sidestep/sim/convex_solid.h"
 
 namespace sidestep::sim {
 
 /// Where two solids touch.
 struct Touch {
-  double depth_m = 0;          ///< of the penetration, >= 0
+  double depth_m = 0;          ///< MuJoCo's, >= 0; it may jump as the solids move
   Eigen::Vector3d p_WContact;  ///< [m] midway between the surfaces
 };
 
@@ -34,6 +34,11 @@ class GeomDistance {
   /// @throws std::invalid_argument if neither of the two is a bounded convex solid.
   double Distance(const mjData& data, int geom1, int geom2) const;
 
+  /// How deep two solids overlap at the poses in `data` [m]; 0 if they do not. To 1e-7 m, see
+  /// sim/convex_depth.h; a plane in closed form; a height field by the one prism that is entered
+  /// deepest. @throws as Distance.
+  double Depth(const mjData& data, int geom1, int geom2) const;
+
   /// A quick lower bound of Distance, from spheres around the geoms.
   double LowerBound(const mjData& data, int geom1, int geom2) const;
 
@@ -44,6 +49,8 @@ class GeomDistance {
     Eigen::Vector3d lower_m, upper_m;  ///< the box around it, in the height field's frame
   };
   static std::vector<Prism> MakePrisms(const mjModel& model, int hfield);
+  /// Swaps the two where needed, so that the first one is convex.
+  const ConvexSolid& ConvexFirst(int* geom1, int* geom2) const;
 
   const mjModel& model_;
   std::vector<std::optional<ConvexSolid>> convex_;  ///< one a geom; none: a plane, a height field

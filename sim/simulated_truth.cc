@@ -27,13 +27,16 @@ SimulatedTruth::SimulatedTruth(const World& world) : world_(world), distance_(wo
 void SimulatedTruth::Observe() {
   const mjModel& model = world_.model();
   const mjData& data = world_.data();
+  touching_.clear();
   const Pair* deepest_pair = nullptr;
   Touch deepest;
   deepest.depth_m = -1;
   for (const Pair& pair : pairs_) {
     if (distance_.LowerBound(data, pair.robot_geom, pair.other_geom) > 0) continue;
     const auto touch = FindTouch(model, data, pair.robot_geom, pair.other_geom);
-    if (touch && touch->depth_m > deepest.depth_m) {
+    if (!touch) continue;
+    touching_.push_back(pair);
+    if (touch->depth_m > deepest.depth_m) {
       deepest = *touch;
       deepest_pair = &pair;
     }
@@ -45,12 +48,17 @@ void SimulatedTruth::Observe() {
     NoteSelfContact();
   }
   const bool is_due = world_.ticks() % (World::kTicksPerSecond / kSamplesPerSecond) == 0;
-  if (is_due || pending_.in_contact != touched_before) Describe(deepest_pair, deepest.depth_m);
+  if (is_due || pending_.in_contact != touched_before) Describe();
   if (is_due) samples_.push_back(std::exchange(pending_, {}));
 }
 
-void SimulatedTruth::Describe(const Pair* deepest_pair, double deepest_m) {
-  MeasureClearance(deepest_pair, deepest_m);
+void SimulatedTruth::Describe() {
+  pending_.clearance_m = std::numeric_limits<double>::infinity();
+  if (touching_.empty()) {
+    MeasureDistance();
+  } else {
+    MeasureDepth();
+  }
   pending_.t = world_.time();
   pending_.X_WO.clear();
   for (const scenarios::MovingObstacle& obstacle : world_.obstacles()) {
@@ -84,11 +92,14 @@ void SimulatedTruth::SetClearance(double clearance_m, const Pair& pair) {
   pending_.nearest_object = GeomOwner(world_.model(), pair.other_geom);
 }
 
-void SimulatedTruth::MeasureClearance(const Pair* deepest_pair, double deepest_m) {
-  if (deepest_pair != nullptr) {
-    SetClearance(-deepest_m, *deepest_pair);
-    return;
+void SimulatedTruth::MeasureDepth() {
+  for (const Pair& pair : touching_) {
+    const double depth = distance_.Depth(world_.data(), pair.robot_geom, pair.other_geom);
+    if (0.0 - depth < pending_.clearance_m) SetClearance(0.0 - depth, pair);  // no -0
   }
+}
+
+void SimulatedTruth::MeasureDistance() {
   const mjData& data = world_.data();
   std::vector<std::pair<double, const Pair*>> candidates;  // nearest first, by the lower bound
   for (const Pair& pair : pairs_) {
@@ -96,7 +107,6 @@ void SimulatedTruth::MeasureClearance(const Pair* deepest_pair, double deepest_m
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
-  pending_.clearance_m = std::numeric_limits<double>::infinity();
   for (const auto& [lower_bound, pair] : candidates) {
     if (lower_bound >= pending_.clearance_m) break;
     const double clearance = distance_.Distance(data, pair->robot_geom, pair->other_geom);

@@ -35,7 +35,8 @@ class SimulatedTruth final : public robot::WorldTruth {
 
   std::vector<ObjectObservation> ObstaclesAt(EpisodeTime t) const override;
 
-  /// As WorldTruth says. While a pair overlaps, clearance_m is minus the depth of the deepest one.
+  /// As WorldTruth says. While pairs touch, clearance_m is minus the depth of
+  /// the deepest one (GeomDistance::Depth).
   std::vector<TruthSample> TakeSamples() override;
   std::optional<TruthSample> ContactSinceLastSample() const override;
 
@@ -46,13 +47,15 @@ class SimulatedTruth final : public robot::WorldTruth {
 
   void NoteContact(const std::string& object, const Touch& touch);
   void NoteSelfContact();
-  void MeasureClearance(const Pair* deepest_pair, double deepest_m);
-  void Describe(const Pair* deepest_pair, double deepest_m);
+  void Describe();
+  void MeasureDistance();
+  void MeasureDepth();
   void SetClearance(double clearance_m, const Pair& pair);
 
   const World& world_;
   GeomDistance distance_;
   std::vector<Pair> pairs_;
+  std::vector<Pair> touching_;  ///< at the last tick
   /// Collects what happens until the next sample; whole as soon as it holds a contact.
   TruthSample pending_;
   std::vector<TruthSample> samples_;

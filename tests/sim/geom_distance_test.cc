@@ -104,6 +104,7 @@ struct Case {
   const char* name;
   const char *geom1, *geom2;
   std::function<double(const Pose&, const Pose&)> distance;  ///< of X_W1, X_W2; negative: overlap
+  bool tells_depth = false;                                  ///< where it is negative
 };
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
@@ -122,13 +123,13 @@ const char* const kPlaneGeom = "type='plane' size='0 0 1'";
 
 const Case kCases[] = {
     {"SphereSphere", kSphereGeom, kSphereGeom,
-     [](const Pose& a, const Pose& b) { return SphereDistance(0.1, a, b, Sphere{0.1}); }},
+     [](const Pose& a, const Pose& b) { return SphereDistance(0.1, a, b, Sphere{0.1}); }, true},
     {"SphereBox", kSphereGeom, kBoxGeom,
-     [](const Pose& a, const Pose& b) { return SphereDistance(0.1, a, b, kBox); }},
+     [](const Pose& a, const Pose& b) { return SphereDistance(0.1, a, b, kBox); }, true},
     {"SphereCylinder", kSphereGeom, kCylinderGeom,
-     [](const Pose& a, const Pose& b) { return SphereDistance(0.1, a, b, kCylinder); }},
+     [](const Pose& a, const Pose& b) { return SphereDistance(0.1, a, b, kCylinder); }, true},
     {"SphereEllipsoid", kSphereGeom, kEllipsoidGeom,
-     [](const Pose& a, const Pose& b) { return SphereDistance(0.1, a, b, kEllipsoid); }},
+     [](const Pose& a, const Pose& b) { return SphereDistance(0.1, a, b, kEllipsoid); }, true},
     {"CapsuleCapsule", kCapsuleGeom, kCapsuleGeom,
      [](const Pose& a, const Pose& b) { return CapsuleDistance(kCapsule, a, b, kCapsule); }},
     {"CapsuleBox", kCapsuleGeom, kBoxGeom,
@@ -140,18 +141,20 @@ const Case kCases[] = {
     {"BoxBox", kBoxGeom, kBoxGeom,
      [](const Pose& a, const Pose& b) { return BoxDistance(kHalf, a, kHalf, b); }},
     {"SpherePlane", kSphereGeom, kPlaneGeom,
-     [](const Pose& a, const Pose& b) { return (b.Inverse() * a.translation()).z() - 0.1; }},
+     [](const Pose& a, const Pose& b) { return (b.Inverse() * a.translation()).z() - 0.1; }, true},
     {"CapsulePlane", kCapsuleGeom, kPlaneGeom,
      [](const Pose& a, const Pose& b) {
        const Pose X_BA = b.Inverse() * a;
        return std::min((X_BA * Vector3d(0, 0, 0.3)).z(), (X_BA * Vector3d(0, 0, -0.3)).z()) - 0.1;
-     }},
+     },
+     true},
     {"BoxPlane", kBoxGeom, kPlaneGeom,
-     [](const Pose& a, const Pose& b) { return BoxOverPlane(kHalf, a, b); }},
+     [](const Pose& a, const Pose& b) { return BoxOverPlane(kHalf, a, b); }, true},
     {"CylinderPlane", kCylinderGeom, kPlaneGeom,
      [](const Pose& a, const Pose& b) {
        return CylinderOverPlane({0.1, 0.6}, a, b);
-     }},
+     },
+     true},
     {"EllipsoidPlane", kEllipsoidGeom, kPlaneGeom,
      [](const Pose& a, const Pose& b) {
        // Its lowest point is where the gradient of (x/a)^2 + (y/b)^2 + (z/c)^2 is against the
@@ -159,7 +162,8 @@ const Case kCases[] = {
        const Vector3d n = a.RotateInverse(b.Rotate(Vector3d::UnitZ()));
        const Vector3d along = kHalf.cwiseProduct(kHalf).cwiseProduct(n);
        return (b.Inverse() * (a * (-along / std::sqrt(along.dot(n))))).z();
-     }},
+     },
+     true},
 };
 
 class EveryPair : public testing::TestWithParam<Case> {};
@@ -177,6 +181,11 @@ TEST_P(EveryPair, IsAsFarApartAsTheClosedFormSays) {
     EXPECT_NEAR(distance.Distance(*m.data, 0, 1), std::max(0.0, wanted), kTolerance_m);
     EXPECT_NEAR(distance.Distance(*m.data, 1, 0), std::max(0.0, wanted), kTolerance_m);
     EXPECT_LE(distance.LowerBound(*m.data, 0, 1), std::max(0.0, wanted) + 1e-12);
+    EXPECT_EQ(distance.Depth(*m.data, 0, 1) > 1e-6, wanted < -1e-6) << wanted;
+    if (GetParam().tells_depth) {
+      EXPECT_NEAR(distance.Depth(*m.data, 0, 1), std::max(0.0, -wanted), 2e-7);
+      EXPECT_NEAR(distance.Depth(*m.data, 1, 0), std::max(0.0, -wanted), 2e-7);
+    }
     if (std::abs(wanted) > 1e-5) {
       EXPECT_EQ(FindTouch(*m.model, *m.data, 0, 1).has_value(), wanted < 0) << wanted;
       EXPECT_EQ(FindTouch(*m.model, *m.data, 1, 0).has_value(), wanted < 0) << wanted;
@@ -336,6 +345,8 @@ TEST(GeomDistance, MeasuresToTheTrianglesOfAHeightField) {
   m.Place(0, Pose::Translation({0, 0, 0.45}));
   EXPECT_NEAR(distance.Distance(*m.data, 0, 1), 0, kTolerance_m);
   EXPECT_TRUE(FindTouch(*m.model, *m.data, 0, 1).has_value());
+  m.Place(0, Pose::Translation(Vector3d(0, 0.3, 0.5) + 0.04 * normal));
+  EXPECT_NEAR(distance.Depth(*m.data, 0, 1), 0.06, 2e-7);
 }
 
 TEST(GeomDistance, SaysHowDeepAndWhereTwoSolidsTouch) {

@@ -117,6 +117,23 @@ TEST(SimulatedTruth, ReportsWhereAndHowDeep) {
   EXPECT_LT((samples[0].p_WContact - Vector3d(0.645, 0, 0.3)).norm(), 1e-9);
 }
 
+TEST(SimulatedTruth, TellsTheDepthInClosedFormWhileAPoleGoesThroughTheFoot) {
+  // Two upright cylinders, of radius 0.06 and 0.2, whose axes pass 0.1 m from each other.
+  scenarios::Scenario scenario = TwoLinkScenario();
+  scenario.floor_m = -1;
+  scenario.moving_obstacles = {
+      Passing("pole", Cylinder{0.2, 1.8}, {-0.1, -0.6, 0.5}, {0, 1, 0}, 1)};
+  const std::vector<TruthSample> samples = Watch(scenario, 1.2);
+  double least_m = 1;
+  for (const TruthSample& sample : samples) {
+    const double wanted_m = std::hypot(0.1, sample.t.seconds() - 0.6) - 0.06 - 0.2;
+    EXPECT_NEAR(sample.clearance_m, wanted_m, 1e-6) << sample.t.seconds();
+    EXPECT_EQ(sample.nearest_robot_part, "foot") << sample.t.seconds();
+    least_m = std::min(least_m, sample.clearance_m);
+  }
+  EXPECT_NEAR(least_m, -0.16, 1e-6);
+}
+
 TEST(SimulatedTruth, SeesABriefContactBetweenItsSamples) {
   // A bead that rushes past and is over the ball for less than 10 ms.
   scenarios::Scenario scenario = TwoLinkScenario();
