@@ -11,7 +11,7 @@
 #include "sidestep/scenarios/variations.h"
 #include "sidestep/sdf/prediction/registry.h"
 #include "sidestep/sdf/world_model.h"
-#include "sidestep/sim/foreign_model.h"
+#include "sidestep/sim/arm_file.h"
 #include "sidestep/sim/robot_agreement.h"
 #include "sidestep/sim/sensors.h"
 #include "sidestep/sim/simulation.h"
@@ -116,7 +116,7 @@ Problem AddRobot(scenarios::Scenario scenario, const DataPaths& paths) {
   CheckWord(scenario, "robot.model", scenario.robot, ModelNames(paths.models, "robot.yaml"));
   robot::RobotModel robot = robot::RobotModel::Load(paths.models, scenario.robot, scenario.X_WB);
   const std::string mjcf = paths.models + "/" + scenario.robot + "/" + scenario.robot + ".xml";
-  sim::CheckAgreement(robot, *sim::LoadModelFile(mjcf), mjcf);
+  sim::CheckAgreement(robot, *sim::LoadArmFile(mjcf), mjcf);
   bench::ResolveTask(scenario, robot);
   return {std::move(scenario), std::move(robot)};
 }

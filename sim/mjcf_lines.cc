@@ -30,4 +30,16 @@ int MjcfLines::Find(const std::string& tag, const std::string& attribute,
   return found != nullptr ? found->GetLineNum() : 1;
 }
 
+int MjcfLines::FindChild(const std::string& tag, const std::string& name, const std::string& child,
+                         int index) const {
+  tinyxml2::XMLDocument document;
+  if (document.LoadFile(path_.c_str()) != tinyxml2::XML_SUCCESS) return 1;
+  const XMLElement* const root = document.RootElement();
+  const XMLElement* const parent = root ? FindBelow(*root, tag, "name", name) : nullptr;
+  if (parent == nullptr) return 1;
+  const XMLElement* found = parent->FirstChildElement(child.c_str());
+  for (; found != nullptr && index > 0; --index) found = found->NextSiblingElement(child.c_str());
+  return (found != nullptr ? found : parent)->GetLineNum();
+}
+
 }  // namespace sidestep::sim

@@ -14,6 +14,11 @@ class MjcfLines {
   /// tag (any if it is empty), outside of `default`; 1 if there is none.
   int Find(const std::string& tag, const std::string& attribute, const std::string& value) const;
 
+  /// The line of the child number `index`, from 0, among those of tag `child` of the element of
+  /// tag `tag` and that name; the line of that element if it has not as many.
+  int FindChild(const std::string& tag, const std::string& name, const std::string& child,
+                int index) const;
+
   const std::string& path() const { return path_; }
 
  private:

@@ -19,6 +19,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 1e-4;  // what four written digits leave, with room
 constexpr int kNumConfigurations = 16;
+constexpr int kPictureGroup = 2;
 constexpr double kUnlimited_rad = 3;  // how far a joint without limits is turned here
 
 bool AreSame(double a, double b) {
@@ -90,6 +91,28 @@ class Comparison {
       if (!drives) FailInMjcf("", name, "drives no joint of " + robot_.file());
     }
     for (int i = 0; i < robot_.num_joints(); ++i) CheckMotorOf(i);
+  }
+
+  // What touches nothing is a picture and is judged in no verdict. That it is meant as one is told
+  // by its group; what touches only some things would be judged against all.
+  void CheckGeoms() const {
+    for (int geom = 0; geom < model_.ngeom; ++geom) {
+      const int body = model_.geom_bodyid[geom];
+      if (!IsOfRobot(body)) continue;
+      const int type = model_.geom_contype[geom], affinity = model_.geom_conaffinity[geom];
+      if (type == 1 && affinity == 1) continue;
+      if (type == 0 && affinity == 0 && model_.geom_group[geom] == kPictureGroup) continue;
+      const std::string link = NameOf(mjOBJ_BODY, body);
+      const int number = geom - model_.body_geomadr[body];
+      throw InputError(
+          mjcf_.path(), mjcf_.FindChild("body", link, "geom", number),
+          "geom " + std::to_string(number + 1) + " of body '" + link + "'",
+          type == 0 && affinity == 0
+              ? "touches nothing (contype and conaffinity 0): a solid has 1 and 1, a picture "
+                "belongs to group 2"
+              : "must have contype and conaffinity 1, or 0 as a picture of group 2; has " +
+                    std::to_string(type) + " and " + std::to_string(affinity));
+    }
   }
 
   void CheckLinks() const {
@@ -250,6 +273,11 @@ class Comparison {
     return q;
   }
 
+  bool IsOfRobot(int body) const {
+    const int robot = mj_name2id(&model_, mjOBJ_BODY, kRobotBody);
+    return robot < 0 || model_.body_rootid[body] == robot;  // alone, or in a world
+  }
+
   Pose BaseIn(const mjData& data) const {
     const int body = mj_name2id(&model_, mjOBJ_BODY, kRobotBody);
     if (body < 0) return Pose();
@@ -307,6 +335,7 @@ void CheckAgreement(const robot::RobotModel& robot, const mjModel& model,
   Comparison comparison(robot, model, mjcf_path);
   comparison.CheckJoints();
   comparison.CheckMotors();
+  comparison.CheckGeoms();
   comparison.CheckLinks();
   comparison.CheckKinematics();
 }

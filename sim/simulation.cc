@@ -1,7 +1,7 @@
 #include "sidestep/sim/simulation.h"
 
 #include "sidestep/core/input_error.h"
-#include "sidestep/sim/foreign_model.h"
+#include "sidestep/sim/arm_file.h"
 #include "sidestep/sim/mujoco_model.h"
 #include "sidestep/sim/no_robot.h"
 #include "sidestep/sim/robot_agreement.h"
@@ -39,7 +39,7 @@ MujocoModelPtr Compile(const std::string& xml, const scenarios::Scenario& scenar
   try {
     model = LoadMujocoModel(xml, scenario.file + ": its world");
   } catch (const InputError&) {
-    CheckAgreement(robot, *LoadModelFile(mjcf), mjcf);
+    CheckAgreement(robot, *LoadArmFile(mjcf), mjcf);
     throw;
   }
   CheckAgreement(robot, *model, mjcf);

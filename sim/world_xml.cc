@@ -9,6 +9,7 @@
 
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/number_text.h"
+#include "sidestep/sim/arm_file.h"
 #include "sidestep/sim/foreign_model.h"
 #include "sidestep/sim/mujoco_model.h"
 #include "sidestep/sim/picture.h"
@@ -74,7 +75,7 @@ void CopyChildren(const XMLElement& from, XMLElement* to) {
 // Whether MJCF gives this element of a section defaults by its own `class`. (Bodies pass theirs on
 // by `childclass`.)
 bool TakesClass(const std::string& section, const std::string& tag) {
-  if (section == "actuator" || section == "equality" || section == "tendon") return true;
+  if (section == "actuator" || section == "tendon") return true;
   return (section == "asset" && (tag == "mesh" || tag == "material")) ||
          (section == "contact" && tag == "pair");
 }
@@ -82,6 +83,7 @@ bool TakesClass(const std::string& section, const std::string& tag) {
 void MergeRobot(const scenarios::Scenario& scenario, const std::string& path, XMLElement* world) {
   XMLDocument document;
   const XMLElement& robot = ParseModel(ReadModelFile(path), path, &document);
+  CheckArmFile(robot, path);
   const std::string main_class = scenario.robot + ".xml";
   const auto section = [&](const char* name) {
     XMLElement* found = world->FirstChildElement(name);
@@ -105,8 +107,8 @@ void MergeRobot(const scenarios::Scenario& scenario, const std::string& path, XM
            child = child->NextSiblingElement("body")) {
         body->InsertEndChild(child->DeepClone(world->GetDocument()));
       }
-    } else if (name == "asset" || name == "contact" || name == "equality" || name == "tendon" ||
-               name == "actuator" || name == "sensor") {
+    } else if (name == "asset" || name == "contact" || name == "tendon" || name == "actuator" ||
+               name == "sensor") {
       XMLElement* to = section(name.c_str());
       XMLElement* last_before = to->LastChildElement();
       CopyChildren(*from, to);
@@ -118,7 +120,7 @@ void MergeRobot(const scenarios::Scenario& scenario, const std::string& path, XM
           Set(child, "class", main_class);
         }
       }
-    }  // Physics options, cameras and lights are the world's own.
+    }  // There is nothing else, CheckArmFile sees to it.
   }
 }
 

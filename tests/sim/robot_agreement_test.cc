@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "sidestep/core/input_error.h"
-#include "sidestep/sim/foreign_model.h"
+#include "sidestep/sim/arm_file.h"
 #include "sidestep/sim/simulation.h"
 #include "tests/sim/two_link.h"
 #include "tests/support/temporary_folder.h"
@@ -125,7 +125,7 @@ TEST(RobotAgreement, HoldsForEveryRobotThatIsShipped) {
     for (const std::string& name : robot::RobotModel::ListNames(models)) {
       const robot::RobotModel robot = robot::RobotModel::Load(models, name, Pose());
       const std::string mjcf = models + "/" + name + "/" + name + ".xml";
-      EXPECT_NO_THROW(CheckAgreement(robot, *LoadModelFile(mjcf), mjcf)) << name;
+      EXPECT_NO_THROW(CheckAgreement(robot, *LoadArmFile(mjcf), mjcf)) << name;
     }
   }
 }

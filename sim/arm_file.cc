@@ -1,0 +1,61 @@
+#include "sidestep/sim/arm_file.h"
+
+#include <tinyxml2.h>
+
+#include <set>
+#include <string_view>
+
+#include "sidestep/core/input_error.h"
+#include "sidestep/sim/foreign_model.h"
+
+namespace sidestep::sim {
+namespace {
+
+using tinyxml2::XMLElement;
+
+const std::set<std::string_view> kTakenOver = {"compiler", "default", "asset",    "worldbody",
+                                               "contact",  "tendon",  "actuator", "sensor"};
+
+[[noreturn]] void Fail(const std::string& name, const XMLElement& element, const std::string& why) {
+  throw InputError(name, element.GetLineNum(), element.Name(), why);
+}
+
+}  // namespace
+
+void CheckArmFile(const XMLElement& root, const std::string& name) {
+  for (const XMLElement* section = root.FirstChildElement(); section != nullptr;
+       section = section->NextSiblingElement()) {
+    const std::string_view tag = section->Name();
+    if (tag == "equality" && section->FirstChildElement() != nullptr) {
+      Fail(name, *section->FirstChildElement(),
+           "ties joints or bodies together, which planning takes for free; leave it out");
+    }
+    if (tag == "equality" || kTakenOver.count(tag) > 0) continue;
+    Fail(name, *section, "is not taken over from a robot, the world has its own; leave it out");
+  }
+  const XMLElement* first = nullptr;
+  for (const XMLElement* world = root.FirstChildElement("worldbody"); world != nullptr;
+       world = world->NextSiblingElement("worldbody")) {
+    for (const XMLElement* child = world->FirstChildElement(); child != nullptr;
+         child = child->NextSiblingElement()) {
+      if (std::string_view(child->Name()) != "body") {
+        Fail(name, *child, "stands beside the root body, and only that is taken over");
+      }
+      if (first != nullptr) {
+        Fail(name, *child,
+             "is a second root body; a robot has one, which is at line " +
+                 std::to_string(first->GetLineNum()));
+      }
+      first = child;
+    }
+  }
+}
+
+MujocoModelPtr LoadArmFile(const std::string& path) {
+  const std::string xml = ReadModelFile(path);
+  tinyxml2::XMLDocument document;
+  CheckArmFile(ParseModel(xml, path, &document), path);
+  return LoadMujocoModel(xml, path);
+}
+
+}  // namespace sidestep::sim
