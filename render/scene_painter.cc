@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/sim/mujoco_model.h"
 #include "sidestep/sim/mujoco_pose.h"
 
 namespace sidestep::render {
@@ -200,7 +201,11 @@ Image ScenePainter::Draw(EpisodeTime t) {
   DropUnseen();
   if (touch) TintTouched(*touch);
   AimShadows();
-  drawing_.Render(scene_.get());
+  try {
+    drawing_.Render(scene_.get());
+  } catch (const sim::SimulationError& error) {  // there is nothing in it but the trace's model
+    throw InputError(trace_.name() + ": model_xml", error.what());
+  }
   {
     Overlay overlay(scene_.get(), drawing_.viewport());
     const mjrRect picture = drawing_.viewport();

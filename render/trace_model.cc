@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/number_text.h"
 #include "sidestep/core/trajectory.h"
 #include "sidestep/render/timeline.h"
 #include "sidestep/sim/foreign_model.h"
@@ -15,6 +16,16 @@ constexpr double kTrailStep_s = 0.01;
 constexpr double kPlanStep_s = 0.02;
 
 Eigen::Vector3d ToVector(const mjtNum* values) { return {values[0], values[1], values[2]}; }
+
+// A picture begins and ends so far from the camera, and MuJoCo draws none if it begins nowhere.
+void CheckView(const mjModel& model, const std::string& name) {
+  const auto near_m = static_cast<float>(model.stat.extent * model.vis.map.znear);
+  const auto far_m = static_cast<float>(model.stat.extent * model.vis.map.zfar);
+  if (near_m >= 1e-6F && near_m < far_m && std::isfinite(far_m)) return;
+  throw InputError(name, "a picture of it would reach from " + ShortestText(near_m) + " to " +
+                             ShortestText(far_m) +
+                             " m (statistic extent times map znear, zfar): needs 0 < near < far");
+}
 
 bool IsInSubtree(const mjModel& model, int body, int root) {
   while (body > root) body = model.body_parentid[body];
@@ -29,6 +40,7 @@ TraceModel::TraceModel(const record::Recording& recording, const std::string& na
   if (recording.joints.empty()) throw InputError(name, "names no joints, so nothing to draw");
   if (recording.model_xml.empty()) throw InputError(name, "holds no model, so nothing to draw");
   model_ = sim::LoadForeignModel(recording.model_xml, name + ": model_xml");
+  CheckView(*model_, name + ": model_xml");
   data_ = sim::MakeMujocoData(*model_);
   int last_joint = 0;
   for (const std::string& joint : recording.joints) {

@@ -113,6 +113,22 @@ TEST_F(RenderCommand, SaysInOneLineWhatIsWrong) {
   EXPECT_FALSE(std::filesystem::exists(Path("a.mp4")));
 }
 
+// One from elsewhere, whose model compiles.
+TEST_F(RenderCommand, SaysWhichTraceCannotBeDrawn) {
+  for (const char* const settings :
+       {"<statistic extent='-1'/>", "<statistic extent='0'/>", "<statistic extent='1e300'/>",
+        "<statistic extent='1e-300'/>", "<visual><map znear='0'/></visual>",
+        "<visual><map znear='-1'/></visual>", "<visual><map zfar='0'/></visual>",
+        "<visual><map zfar='-1'/></visual>", "<visual><map znear='10' zfar='1'/></visual>"}) {
+    record::Recording altered = render::MakeSampleRecording({});
+    altered.model_xml.insert(altered.model_xml.find("<asset>"), settings);
+    record::WriteRecording(altered, trace_);
+    EXPECT_THAT(Run(trace_ + " --still " + Path("a.png")),
+                ::testing::StartsWith(trace_ + ": model_xml: a picture of it would reach from "))
+        << settings;
+  }
+}
+
 TEST_F(RenderCommand, RefusesToDrawWhereTheEnvironmentForbidsIt) {
   setenv("MUJOCO_GL", "disable", 1);
   EXPECT_THAT(Run(trace_ + " --still " + Path("a.png")), HasSubstr("MUJOCO_GL: is 'disable'"));
