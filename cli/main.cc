@@ -80,6 +80,8 @@ int Run(int argc, char** argv) {
 int main(int argc, char** argv) {
   // Who stops reading what is printed does not stop the work whose results go into files.
   std::signal(SIGPIPE, SIG_IGN);
+  // A file that grows too long is an error like a full disk, told in a line.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     const int exit_code = Run(argc, argv);
     sidestep::cli::FinishOutput();

@@ -200,6 +200,17 @@ TEST(NoRoom, IsNoticedByRunAndCompareAndTheFilesAreThere) {
   EXPECT_EQ(nlohmann::json::parse(Read(out + "/result.json")).at("scenario"), "hsr_walkway");
 }
 
+TEST(FileSizeLimit, IsAnErrorOfTheFileThatGrowsBeyondIt) {
+  const TemporaryFolder folder;
+  const std::string out = folder.path();
+  const Finished run = RunProgram(
+      {"/bin/sh", "-c",
+       "ulimit -f 1; \"$0\" run hsr_walkway --out " + out + " --set planner.name=straight_line",
+       SIDESTEP_PROGRAM});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_EQ(run.err, out + "/trace.h5: cannot be written: File too large\n");
+}
+
 TEST(StandardOutput, WhoseReaderHasGoneIsNoError) {
   for (const std::string arguments : {"list", "--help"}) {
     const Finished finished =
