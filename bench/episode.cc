@@ -1,5 +1,7 @@
 #include "sidestep/bench/episode.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <chrono>
 #include <deque>
@@ -23,6 +25,7 @@
 #include "sidestep/planner/registry.h"
 #include "sidestep/planner/replanner.h"
 #include "sidestep/robot/robot_error.h"
+#include "sidestep/sdf/map/object_field.h"
 #include "sidestep/sdf/world_model.h"
 
 namespace sidestep::bench {
@@ -347,6 +350,31 @@ class Loop {
 
 }  // namespace
 
+namespace {
+
+// Of what is known by its shape, and not by cells that the workspace bounds.
+void CheckFieldSizes(const scenarios::Scenario& scenario, const sdf::WorldModelOptions& options) {
+  const bool by_truth = options.knowledge == sdf::Knowledge::kFullKnowledge;
+  const bool by_tags =
+      options.knowledge == sdf::Knowledge::kPrediction && scenario.sensor.tags.has_value();
+  if (!by_truth && !by_tags) return;
+  const double growth_m = by_tags && options.growth_sigmas > 0 ? options.growth_limit_m : 0;
+  for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
+    const double cells = sdf::ShapeFieldCells(
+        scenario.moving_obstacles[i].shape, options.grid.cell_m, options.max_distance_m + growth_m);
+    if (cells <= sdf::kMostShapeFieldCells) continue;
+    throw scenarios::WrongValue(
+        scenario, "moving_obstacles[" + std::to_string(i) + "].shape",
+        fmt::format("its field would have {:.3g} cells of {:g} m, it may have {:.3g}: make '{}' "
+                    "smaller or workspace.cell_m larger",
+                    cells, options.grid.cell_m, sdf::kMostShapeFieldCells,
+                    scenario.moving_obstacles[i].name),
+        {"workspace.cell_m"});
+  }
+}
+
+}  // namespace
+
 sdf::WorldModelOptions MakeWorldModelOptions(const scenarios::Scenario& scenario,
                                              double max_distance_m, const EpisodeWorld& world) {
   sdf::WorldModelOptions options;
@@ -365,6 +393,7 @@ sdf::WorldModelOptions MakeWorldModelOptions(const scenarios::Scenario& scenario
     options.exact.shapes = StaticShapes(scenario);
   // Where the scenario is not simulated, its motions are not the truth.
   if (world.truth != nullptr) options.true_obstacles = TrueMotions(scenario);
+  CheckFieldSizes(scenario, options);
   return options;
 }
 

@@ -20,6 +20,7 @@ namespace sidestep::bench {
 
 /// How the scenario's model of the world is made, fed from `world`. Its fields hold no reference to
 /// either and tell distances up to `max_distance_m`.
+/// @throws InputError for a thing that is known by its shape and too large for a field of its own.
 sdf::WorldModelOptions MakeWorldModelOptions(const scenarios::Scenario& scenario,
                                              double max_distance_m, const EpisodeWorld& world);
 

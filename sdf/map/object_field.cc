@@ -41,9 +41,20 @@ SdfGrid MakeObjectField(const OccupancyGrid& shape_O, double margin_m,
   return FastDistanceTransform().Compute(padded, {.convention = convention});
 }
 
+double ShapeFieldCells(const Shape& shape, double cell_m, double margin_m) {
+  double cells = 1;
+  for (const double half_extent_m : HalfExtents(shape)) {
+    cells *= 2 * (std::ceil((half_extent_m + margin_m) / cell_m) + 1) + 1;
+  }
+  return cells;
+}
+
 SdfGrid MakeShapeField(const Shape& shape, double cell_m, double margin_m) {
   CheckMargin(margin_m);
   if (!(cell_m > 0)) throw std::invalid_argument("object field: the cell must be > 0");
+  if (!(ShapeFieldCells(shape, cell_m, margin_m) <= kMostShapeFieldCells)) {
+    throw std::invalid_argument("object field: the shape is too large for its cells");
+  }
   const Eigen::Vector3d half_extents_m = HalfExtents(shape);
   GridSpec spec;
   spec.cell_m = cell_m;

@@ -19,10 +19,17 @@ int PaddingCells(double margin_m, double cell_m);
 SdfGrid MakeObjectField(const OccupancyGrid& shape_O, double margin_m,
                         DistanceConvention convention = DistanceConvention::kSurface);
 
+/// What a field may have at most, for its half a gigabyte of memory.
+inline constexpr double kMostShapeFieldCells = 512.0 * 512 * 512;
+
+/// How many cells MakeShapeField makes of a shape; they may be beyond any integer.
+double ShapeFieldCells(const Shape& shape, double cell_m, double margin_m);
+
 /// The exact distances of an ideal shape, sampled at cells of its own frame O (one has its centre
 /// in the origin), padded for `margin_m` > 0. Unlike a field made from occupied cells it knows the
 /// surface to better than half a cell.
-/// @throws std::invalid_argument unless cell and margin are > 0.
+/// @throws std::invalid_argument unless cell and margin are > 0 and there are at most
+/// kMostShapeFieldCells.
 SdfGrid MakeShapeField(const Shape& shape, double cell_m, double margin_m);
 
 }  // namespace sidestep::sdf

@@ -267,6 +267,16 @@ TEST(CompositeField, IsWithin3MillimetresInFreeSpaceForAlmostAllOffsetsAndPoints
   EXPECT_LT(p99(near_errors_m), 0.010);
 }
 
+TEST(ShapeField, SaysBeforehandHowManyCellsItTakesAndRefusesTooMany) {
+  for (const Shape& shape : {Shape(Sphere{0.11}), Shape(Box{{0.3, 0.02, 0.1}})}) {
+    const SdfGrid field = MakeShapeField(shape, kCell_m, kClamp_m);
+    EXPECT_EQ(ShapeFieldCells(shape, kCell_m, kClamp_m),
+              static_cast<double>(field.spec().num_cells()));
+  }
+  EXPECT_THROW(MakeShapeField(Sphere{1000}, kCell_m, kClamp_m), std::invalid_argument);
+  EXPECT_THROW(MakeShapeField(Sphere{1e12}, 1e-3, kClamp_m), std::invalid_argument);
+}
+
 struct ShapeCase {
   const char* name;
   Shape shape;
