@@ -16,6 +16,7 @@
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/scenario_options.h"
+#include "sidestep/cli/thin_things.h"
 #include "sidestep/cli/wiring.h"
 #include "sidestep/core/atomic_file.h"
 #include "sidestep/render/font.h"
@@ -102,6 +103,7 @@ int Audit(const AuditOptions& options) {
   const DataPaths paths = FindDataPaths();
   const Problem problem =
       LoadProblem(options.scenario.scenario, ParseOverrides(options.scenario), paths);
+  WarnOfThinThings(problem.scenario);
   const std::string out = MakeOutFolder(
       options.out.empty() ? "out/" + problem.scenario.name + "/audit" : options.out,
       {"slice.png", "field.nrrd", "truth.nrrd", "difference.nrrd", "occupancy.nrrd", "audit.json"});

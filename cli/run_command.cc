@@ -13,6 +13,7 @@
 #include "sidestep/cli/run_summary.h"
 #include "sidestep/cli/scenario_options.h"
 #include "sidestep/cli/stop_signals.h"
+#include "sidestep/cli/thin_things.h"
 #include "sidestep/cli/versions.h"
 #include "sidestep/cli/wiring.h"
 #include "sidestep/core/atomic_file.h"
@@ -34,6 +35,7 @@ int Run(const RunOptions& options) {
   const DataPaths paths = FindDataPaths();
   const Problem problem =
       LoadProblem(options.scenario.scenario, ParseOverrides(options.scenario), paths);
+  WarnOfThinThings(problem.scenario);
   const std::string out = MakeOutFolder(
       options.out.empty() ? "out/" + problem.scenario.name + "/" + problem.scenario.knowledge
                           : options.out,

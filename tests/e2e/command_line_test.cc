@@ -143,6 +143,12 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"SettingOfAFloorAboveTheRobot",
                 {"run", "hsr_walkway", "--set", "floor_m=1"},
                 {"--set floor_m: task.start: the robot's sphere"}},
+        Mistake{"SettingOfAShapeTooLargeForAFieldOfItsOwn",
+                {"run", "hsr_walkway", "--knowledge", "full_knowledge", "--set",
+                 "moving_obstacles[0].shape={sphere: {radius_m: 1000}}", "--set",
+                 "moving_obstacles[0].motion.linear.start_m=[0, 2000, 0]"},
+                {"--set moving_obstacles[0].shape: its field would have 1.25e+14 cells of 0.04 m, "
+                 "it may have 1.34e+08: make 'hsr' smaller or workspace.cell_m larger"}},
         Mistake{"SettingOfABaseThatIsNowhere",
                 {"run", "hsr_walkway", "--set", "robot.base.position_m=[1e12, 0, 0]"},
                 {"--set robot.base.position_m: must be within 1000 km"}},
@@ -581,6 +587,41 @@ TEST(Data, FromAFolderThatHoldsNoneIsRefused) {
   const Finished finished = Sidestep({"list"}, {"SIDESTEP_DATA_DIR=/nowhere"});
   EXPECT_EQ(finished.exit_code, 2);
   EXPECT_THAT(finished.err, StartsWith("SIDESTEP_DATA_DIR: "));
+}
+
+// Of what the planner may not see while the verdict does.
+TEST(ThinThings, AreWarnedOfOnceEachWhereOnlyCentresCount) {
+  const TemporaryFolder folder;
+  const auto err = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {
+        "run",   SIDESTEP_SOURCE_DIR "/tests/data/hard_scenarios/thin_sheet.yaml",
+        "--out", folder.path(),
+        "--set", "planner.name=straight_line"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Finished finished = Sidestep(arguments);
+    EXPECT_EQ(finished.exit_code, 0) << finished.err;
+    return finished.err;
+  };
+  const std::string sheet = err({"--set", "sensor.cells=centre"});
+  EXPECT_THAT(sheet, testing::StartsWith("warning: "));
+  EXPECT_THAT(sheet, HasSubstr("thin_sheet.yaml:"));
+  EXPECT_THAT(sheet, HasSubstr("static_boxes["));
+  EXPECT_EQ(std::count(sheet.begin(), sheet.end(), '\n'), 1) << sheet;
+  EXPECT_EQ(err({}), "");
+  EXPECT_EQ(err({"--set", "sensor.cells=centre", "--set", "static_world=exact"}), "");
+}
+
+TEST(ThinThings, ThatMoveAreWarnedOfToo) {
+  const TemporaryFolder folder;
+  for (const std::string command : {"run", "audit"}) {
+    const Finished finished = Sidestep({command, "hsr_walkway", "--out", folder.path(), "--set",
+                                        "planner.name=straight_line", "--set",
+                                        "moving_obstacles[0].shape={cylinder: {radius_m: 0.015, "
+                                        "length_m: 1.2}}"});
+    EXPECT_EQ(finished.exit_code, 0) << finished.err;
+    EXPECT_THAT(finished.err, HasSubstr("warning: --set moving_obstacles[0].shape: 'hsr' is 0.03 m "
+                                        "thin, less than a cell of 0.04 m"));
+  }
 }
 
 }  // namespace

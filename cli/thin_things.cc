@@ -1,0 +1,40 @@
+#include "sidestep/cli/thin_things.h"
+
+#include <string>
+
+#include "sidestep/cli/console.h"
+#include "sidestep/core/shape.h"
+
+namespace sidestep::cli {
+
+void WarnOfThinThings(const scenarios::Scenario& scenario) {
+  // A camera fills the cells that hold a point, whatever the rule is.
+  if (scenario.sensor.cells != CellRule::kCentre || scenario.sensor.camera) return;
+  const double cell_m = scenario.grid.cell_m;
+  const auto check = [&](const std::string& key, const std::string& name, const Shape& shape) {
+    const double thickness_m = 2 * HalfExtents(shape).minCoeff();
+    if (thickness_m >= cell_m) return;
+    PrintErrorText(
+        std::string("warning: ") +
+        scenarios::WrongValue(
+            scenario, key,
+            fmt::format("'{}' is {:g} m thin, less than a cell of {:g} m: with sensor.cells centre "
+                        "it may fall between the cells, unseen; touched fills all that it reaches",
+                        name, thickness_m, cell_m))
+            .what() +
+        "\n");
+  };
+  if (scenario.static_world == scenarios::StaticWorld::kOccupancy) {
+    for (std::size_t i = 0; i < scenario.static_boxes.size(); ++i) {
+      const scenarios::StaticBox& box = scenario.static_boxes[i];
+      check("static_boxes[" + std::to_string(i) + "].size_m", box.name, Box{box.size_m});
+    }
+  }
+  if (scenario.knowledge == "full_knowledge") return;  // moving things are known by their shapes
+  for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
+    const scenarios::MovingObstacle& obstacle = scenario.moving_obstacles[i];
+    check("moving_obstacles[" + std::to_string(i) + "].shape", obstacle.name, obstacle.shape);
+  }
+}
+
+}  // namespace sidestep::cli
