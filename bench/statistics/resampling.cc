@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <random>
 #include <stdexcept>
 
 #include "sidestep/bench/statistics.h"
+#include "sidestep/core/random.h"
 
 namespace sidestep::bench {
 
@@ -16,13 +16,13 @@ Interval BootstrapOverClusters(int num_clusters,
   if (num_clusters < 1 || num_draws < 1 || !(coverage > 0 && coverage < 1)) {
     throw std::invalid_argument("BootstrapOverClusters: needs clusters, draws, 0 < coverage < 1");
   }
-  std::mt19937_64 generator(seed);
+  RandomStream random(seed, "bootstrap");
   std::vector<int> sample(static_cast<std::size_t>(num_clusters));
   std::vector<double> values;
   for (int draw = 0; draw < num_draws; ++draw) {
-    // The bias of the remainder is below 1e-15, and it is the same with every library.
+    // The bias of the remainder is below 1e-15.
     for (int& cluster : sample) {
-      cluster = static_cast<int>(generator() % static_cast<std::uint64_t>(num_clusters));
+      cluster = static_cast<int>(random.Bits() % static_cast<std::uint64_t>(num_clusters));
     }
     const double value = statistic(sample);
     if (!std::isnan(value)) values.push_back(value);
