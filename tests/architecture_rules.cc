@@ -35,6 +35,13 @@ const std::vector<Craft> kCrafts = {
     {"std::fprintf(", "cli/console", "prints"},
     {"std::cout", "cli/console", "prints"},
 };
+// Random numbers of the C++ library and of Eigen.
+const Names kForeignRandom = {"<random>",           "_distribution<",
+                              "std::mt19937",       "std::minstd_",
+                              "std::ranlux",        "std::default_random_engine",
+                              "std::shuffle",       "std::ranges::shuffle",
+                              "std::random_device", "std::rand(",
+                              "::Random(",          "setRandom("};
 // Programs of their own, and the log of a study, which grows as the study goes on.
 const Names kOutsideTheCrafts = {"bench/micro/", "bench/peers/", "bench/study_log."};
 
@@ -101,7 +108,7 @@ class Checker {
     CheckTopLevel();
     for (const auto& [path, text] : tree_) {
       CheckNoMachinePath(path, text);
-      if (IsModule(TopFolder(path))) CheckRandomNumbers(path, text);
+      CheckRandomNumbers(path, text);
       if (EndsWith(path, ".h") && text.find("#pragma once") == std::string::npos) {
         Complain(path, "a header without #pragma once");
       }
@@ -150,12 +157,17 @@ class Checker {
     }
   }
 
-  // What these give is each library's own; what a run draws must be the same everywhere.
+  // What these give is each library's own, or a state that all share; what a run or a test draws
+  // must be the same everywhere.
   void CheckRandomNumbers(const std::string& path, const std::string& text) {
+    if (!(EndsWith(path, ".h") || EndsWith(path, ".cc"))) return;
+    if (StartsWith(path, "tests/architecture_")) return;  // these name what they look for
     const std::vector<std::string> lines = Lines(text);
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      for (const char* const name : {"_distribution<", "std::shuffle", "std::random_device"}) {
-        if (lines[i].find(name) == std::string::npos) continue;
+      const auto is_named = [&](const std::string& word) {
+        return lines[i].find(word) != std::string::npos;
+      };
+      if (std::any_of(kForeignRandom.begin(), kForeignRandom.end(), is_named)) {
         Complain(path, static_cast<int>(i) + 1, "random numbers come from core/random.h");
       }
     }

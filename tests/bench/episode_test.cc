@@ -16,6 +16,7 @@
 #include "sidestep/record/recording_file.h"
 #include "tests/bench/kinematic_world.h"
 #include "tests/support/planar_arm.h"
+#include "tests/support/random_points.h"
 #include "tests/support/temporary_folder.h"
 
 namespace sidestep::bench {
@@ -141,7 +142,8 @@ TEST_F(Episode, OfARobotThatSeesNothingGetsNoPlanAndSaysWhy) {
 }
 
 TEST_F(Episode, GivesFieldsThatOutliveTheirWorldAndSayTheSameAfterwards) {
-  const Eigen::Matrix3Xd p_WQ = Eigen::Matrix3Xd::Random(3, 200);
+  RandomStream random(1, "points");
+  const Eigen::Matrix3Xd p_WQ = UniformPoints(random, 200, 1);
   for (const sdf::Knowledge knowledge : sdf::kAllKnowledge) {
     std::vector<std::shared_ptr<const sdf::DistanceField>> fields;
     std::vector<Eigen::VectorXd> said_m;

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -11,6 +10,7 @@
 #include "sidestep/bench/reproduce/predicted_maps.h"
 #include "sidestep/bench/reproduce/published_maps.h"
 #include "sidestep/bench/reproduce/true_clearance.h"
+#include "sidestep/core/random.h"
 
 namespace sidestep::bench {
 namespace {
@@ -21,11 +21,10 @@ const std::string kScenarios = SIDESTEP_SOURCE_DIR "/scenarios";
 
 // Points in a box around the Panda and the way of the HSR.
 std::vector<Eigen::Vector3d> Points() {
-  std::mt19937 generator(7);
-  std::uniform_real_distribution<double> unit(0, 1);
+  RandomStream random(7, "points");
   std::vector<Eigen::Vector3d> points;
   for (int i = 0; i < 3000; ++i) {
-    const double x = unit(generator), y = unit(generator), z = unit(generator);
+    const double x = random.Uniform(), y = random.Uniform(), z = random.Uniform();
     points.emplace_back(-0.5 + 1.6 * x, -0.9 + 3.0 * y, -0.3 + 1.8 * z);
   }
   return points;

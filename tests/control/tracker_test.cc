@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <ostream>
-#include <random>
 #include <stdexcept>
 #include <string>
 
@@ -115,20 +114,20 @@ class TrackerUnderLimits : public ::testing::TestWithParam<LimitsCase> {
   Driven tracker_{limits_};
 
   // A cubic trajectory through random states: some calm, some far beyond every limit.
-  Trajectory RandomTrajectory(std::mt19937_64& random) {
+  Trajectory RandomTrajectory(RandomStream& random) {
     const int n = robot_.num_joints(), K = 4;
-    std::uniform_real_distribution<double> unit(-1, 1);
-    const double wildness = std::exp2(3 * unit(random) - 1);
+    const auto unit = [&] { return random.Uniform(-1, 1); };
+    const double wildness = std::exp2(3 * unit() - 1);
     Trajectory trajectory;
-    trajectory.t_s = VectorXd::LinSpaced(K, 0, 0.1 * (K - 1) * std::exp2(2 * unit(random)));
+    trajectory.t_s = VectorXd::LinSpaced(K, 0, 0.1 * (K - 1) * std::exp2(2 * unit()));
     trajectory.q.resize(n, K);
     trajectory.v.resize(n, K);
     for (int k = 0; k < K; ++k) {
       for (int j = 0; j < n; ++j) {
         const double middle = (limits_.q_min(j) + limits_.q_max(j)) / 2;
         const double half = (limits_.q_max(j) - limits_.q_min(j)) / 2;
-        trajectory.q(j, k) = middle + wildness * half * unit(random);
-        trajectory.v(j, k) = wildness * limits_.v_max(j) * unit(random);
+        trajectory.q(j, k) = middle + wildness * half * unit();
+        trajectory.v(j, k) = wildness * limits_.v_max(j) * unit();
       }
     }
     return trajectory;
@@ -136,18 +135,22 @@ class TrackerUnderLimits : public ::testing::TestWithParam<LimitsCase> {
 };
 
 TEST_P(TrackerUnderLimits, BreaksNoneWhateverItIsToldToFollow) {
-  std::mt19937_64 random(1);
-  std::uniform_int_distribution<int> duration_ticks(1, 1500);
+  RandomStream random(1, "trajectories");
   LimitJudge judge(limits_, home_);
   tracker_.Start(home_);
   for (int tick = 0; tick < 20000;) {
     const Trajectory trajectory = RandomTrajectory(random);
-    const int end = tick + duration_ticks(random);
-    const bool brake = random() % 5 == 0;
+    const int end = tick + 1 + static_cast<int>(random.Bits() % 1500);
+    const bool brake = random.Bits() % 5 == 0;
     for (int k = 1; tick < end; ++tick, ++k) {
       const TrajectoryPoint target = Sample(trajectory, HorizonOffset(k * kPeriod_s));
       ASSERT_NO_FATAL_FAILURE(judge.Judge(brake ? tracker_.Brake() : tracker_.Step(target)));
     }
+  }
+  // From wherever that ends, to what lies beyond the range.
+  const TrajectoryPoint beyond = At(limits_.q_max + VectorXd::Ones(home_.size()));
+  for (int tick = 0; tick < 20000 && judge.largest_reach() < 0.9999; ++tick) {
+    ASSERT_NO_FATAL_FAILURE(judge.Judge(tracker_.Step(beyond)));
   }
   if (std::isfinite(limits_.jerk_max(0))) {
     EXPECT_GT(judge.largest_jerk_share(), 0.999) << "the limits were not tried";

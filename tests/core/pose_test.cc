@@ -5,25 +5,15 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <random>
 #include <stdexcept>
+
+#include "tests/support/random_points.h"
 
 namespace sidestep {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kTight = 1e-14;
-
-Eigen::Vector3d RandomVector(std::mt19937_64& random) {
-  std::uniform_real_distribution<double> uniform(-2, 2);
-  return {uniform(random), uniform(random), uniform(random)};
-}
-
-Pose RandomPose(std::mt19937_64& random) {
-  std::normal_distribution<double> normal;
-  const Eigen::Quaterniond R(normal(random), normal(random), normal(random), normal(random));
-  return Pose(R, RandomVector(random));
-}
 
 // The same pose as the textbook's 4 x 4 matrix, to compare with.
 Eigen::Matrix4d Matrix(const Pose& X) {
@@ -39,9 +29,9 @@ TEST(Pose, IsTheIdentityByDefault) {
 }
 
 TEST(Pose, ComposesAndInvertsLikeHomogeneousMatrices) {
-  std::mt19937_64 random(1);
+  RandomStream random(1, "poses");
   for (int i = 0; i < 100; ++i) {
-    const Pose X_AB = RandomPose(random), X_BC = RandomPose(random);
+    const Pose X_AB = RandomPose(random, 2), X_BC = RandomPose(random, 2);
     EXPECT_TRUE(Matrix(X_AB * X_BC).isApprox(Matrix(X_AB) * Matrix(X_BC), kTight));
     EXPECT_TRUE(Matrix(X_AB.Inverse()).isApprox(Matrix(X_AB).inverse(), kTight));
     EXPECT_LT((Matrix(X_AB * X_AB.Inverse()) - Eigen::Matrix4d::Identity()).norm(), kTight);
@@ -49,10 +39,10 @@ TEST(Pose, ComposesAndInvertsLikeHomogeneousMatrices) {
 }
 
 TEST(Pose, MovesPointsAndTurnsVectors) {
-  std::mt19937_64 random(2);
+  RandomStream random(2, "poses");
   for (int i = 0; i < 100; ++i) {
-    const Pose X_AB = RandomPose(random);
-    const Eigen::Vector3d p_BQ = RandomVector(random);
+    const Pose X_AB = RandomPose(random, 2);
+    const Eigen::Vector3d p_BQ = UniformPoint(random, 2);
     const Eigen::Matrix3d R_AB = X_AB.rotation().toRotationMatrix();
     EXPECT_LT((X_AB * p_BQ - (X_AB.translation() + R_AB * p_BQ)).norm(), kTight);
     EXPECT_LT((X_AB.Rotate(p_BQ) - R_AB * p_BQ).norm(), kTight);
@@ -96,9 +86,9 @@ TEST(Pose, NormalisesItsRotation) {
 }
 
 TEST(Pose, MadeAgainFromItsOwnPartsKeepsEveryBit) {
-  std::mt19937_64 random(4);
+  RandomStream random(4, "poses");
   for (int i = 0; i < 10000; ++i) {
-    const Pose X = RandomPose(random);
+    const Pose X = RandomPose(random, 2);
     const Pose again(X.rotation(), X.translation());
     EXPECT_EQ(again.rotation().coeffs(), X.rotation().coeffs());
   }
@@ -117,9 +107,9 @@ TEST(Pose, RefusesAZeroRotationAndNumbersThatAreNotFinite) {
 
 // A product of many poses must stay a rotation: each product normalises.
 TEST(Pose, StaysARotationOverLongProducts) {
-  std::mt19937_64 random(3);
+  RandomStream random(3, "poses");
   Pose X;
-  for (int i = 0; i < 10000; ++i) X = Pose(RandomPose(random).rotation(), {0, 0, 0}) * X;
+  for (int i = 0; i < 10000; ++i) X = Pose(RandomPose(random, 2).rotation(), {0, 0, 0}) * X;
   EXPECT_NEAR(X.rotation().norm(), 1, kTight);
 }
 

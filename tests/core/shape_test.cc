@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <ostream>
-#include <random>
 #include <string>
 #include <vector>
+
+#include "tests/support/random_points.h"
 
 namespace sidestep {
 namespace {
@@ -82,6 +84,7 @@ double DistanceBySearch(const Shape& shape, const Vector3d& p) {
   };
   constexpr int kSteps = 48;
   constexpr int kStarts = 8;
+  constexpr int kWays = 64;
   std::vector<Start> starts;
   for (int face = 0; face < 6; ++face) {
     for (int i = 0; i <= kSteps; ++i) {
@@ -99,9 +102,11 @@ double DistanceBySearch(const Shape& shape, const Vector3d& p) {
     for (double step = 1.0 / kSteps; step > 1e-9; step /= 2) {
       for (bool moved = true; moved;) {
         moved = false;
-        for (int move = 0; move < 9; ++move) {
-          const double u = std::clamp(at.u + (move % 3 - 1) * step, -1.0, 1.0);
-          const double v = std::clamp(at.v + (move / 3 - 1) * step, -1.0, 1.0);
+        // So many ways, for the one that leads up from a ridge of the height may be narrow.
+        for (int way = 0; way < kWays; ++way) {
+          const double angle = 2 * std::numbers::pi * way / kWays;
+          const double u = std::clamp(at.u + step * std::cos(angle), -1.0, 1.0);
+          const double v = std::clamp(at.v + step * std::sin(angle), -1.0, 1.0);
           const double h = height(at.face, u, v);
           if (h > at.height) {
             at = {h, at.face, u, v};
@@ -127,12 +132,10 @@ class EveryShape : public ::testing::TestWithParam<Case> {
 
   // Points in a box twice the shape's size, about one in eight inside the shape's own box.
   std::vector<Vector3d> Points(int count) const {
-    std::mt19937_64 random(5);
-    std::uniform_real_distribution<double> uniform(-2, 2);
+    RandomStream random(5, "points");
     std::vector<Vector3d> points;
     for (int i = 0; i < count; ++i) {
-      const Vector3d unit(uniform(random), uniform(random), uniform(random));
-      points.push_back(unit.cwiseProduct(HalfExtents(shape())));
+      points.push_back(UniformPoint(random, 2).cwiseProduct(HalfExtents(shape())));
     }
     return points;
   }
@@ -231,10 +234,9 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return test.param.name; });
 
 TEST(Ellipsoid, WithEqualAxesIsTheSphere) {
-  std::mt19937_64 random(9);
-  std::uniform_real_distribution<double> uniform(-1, 1);
+  RandomStream random(9, "points");
   for (int i = 0; i < 1000; ++i) {
-    const Vector3d p(uniform(random), uniform(random), uniform(random));
+    const Vector3d p = UniformPoint(random, 1);
     EXPECT_NEAR(SignedDistance(Ellipsoid{{0.4, 0.4, 0.4}}, p), p.norm() - 0.4, 1e-14);
   }
 }

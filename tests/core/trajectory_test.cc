@@ -6,9 +6,10 @@
 #include <functional>
 #include <limits>
 #include <ostream>
-#include <random>
 #include <stdexcept>
 #include <string>
+
+#include "sidestep/core/random.h"
 
 namespace sidestep {
 namespace {
@@ -19,12 +20,11 @@ Eigen::VectorXd Vector(std::initializer_list<double> values) {
 
 // Three joints, uneven steps, not starting at zero.
 Trajectory RandomTrajectory() {
-  std::mt19937_64 random(7);
-  std::uniform_real_distribution<double> uniform(-1, 1);
+  RandomStream random(7, "states");
   Trajectory trajectory;
   trajectory.t_s = Vector({0.2, 0.5, 0.6, 1.3, 2.0});
-  trajectory.q = Eigen::MatrixXd::NullaryExpr(3, 5, [&]() { return uniform(random); });
-  trajectory.v = Eigen::MatrixXd::NullaryExpr(3, 5, [&]() { return uniform(random); });
+  trajectory.q = Eigen::MatrixXd::NullaryExpr(3, 5, [&]() { return random.Uniform(-1, 1); });
+  trajectory.v = Eigen::MatrixXd::NullaryExpr(3, 5, [&]() { return random.Uniform(-1, 1); });
   return trajectory;
 }
 

@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
+
+#include "tests/support/random_points.h"
 
 namespace sidestep::render {
 namespace {
@@ -32,8 +33,7 @@ struct Case {
 };
 
 TEST(FitCamera, HoldsEveryPointAndCannotComeNearer) {
-  std::mt19937_64 random(1);
-  std::uniform_real_distribution<double> uniform(-1, 1);
+  RandomStream random(1, "points");
   const Case cases[] = {{0, -0.5, {-0.5, 0.5, -0.3, 0.3}},
                         {2.1, -0.2, {-0.2, 0.4, -0.3, 0.1}},
                         {-1.3, 0.4, {-0.1, 0.1, -0.6, 0.6}},
@@ -42,7 +42,8 @@ TEST(FitCamera, HoldsEveryPointAndCannotComeNearer) {
     for (int repeat = 0; repeat < 20; ++repeat) {
       Eigen::Matrix3Xd points(3, 12);
       for (auto point : points.colwise()) {
-        point = Eigen::Vector3d(3 * uniform(random), uniform(random), 2 + uniform(random));
+        point = UniformPoint(random, 1).cwiseProduct(Eigen::Vector3d(3, 1, 1));
+        point.z() += 2;
       }
       const CameraView view = FitCamera(points, c.azimuth_rad, c.elevation_rad, c.frustum);
       const Eigen::Matrix2Xd seen = Project(view, points);

@@ -11,10 +11,10 @@
 #include <iostream>
 #include <map>
 #include <memory>
-#include <random>
 #include <string>
 #include <vector>
 
+#include "sidestep/core/random.h"
 #include "sidestep/core/shape.h"
 #include "sidestep/robot/robot_model.h"
 #include "tests/robot/geom_surface.h"
@@ -54,13 +54,12 @@ class EveryModel : public ::testing::TestWithParam<std::string> {
   std::vector<VectorXd> Configurations(int num_random) const {
     std::vector<VectorXd> all;
     for (const auto& [name, q] : robot_.configurations()) all.push_back(q);
-    std::mt19937_64 random(1);
+    RandomStream random(1, "configurations");
     for (int i = 0; i < num_random; ++i) {
       VectorXd q(robot_.num_joints());
       for (int j = 0; j < q.size(); ++j) {
         const JointLimits& limits = robot_.limits()[static_cast<std::size_t>(j)];
-        q(j) = std::uniform_real_distribution<double>(std::max(limits.q_min, -3.0),
-                                                      std::min(limits.q_max, 3.0))(random);
+        q(j) = random.Uniform(std::max(limits.q_min, -3.0), std::min(limits.q_max, 3.0));
       }
       all.push_back(q);
     }

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <random>
 #include <span>
 #include <stdexcept>
 #include <vector>
@@ -16,6 +15,7 @@
 #include "sidestep/sdf/map/distance_transform.h"
 #include "sidestep/sdf/map/object_field.h"
 #include "tests/sdf/box_scene.h"
+#include "tests/support/random_points.h"
 
 namespace sidestep::sdf {
 namespace {
@@ -102,13 +102,10 @@ TEST(CompositeField, HasNoJumpWhereAnObjectsGridEnds) {
   const auto pillar = PillarField();
   const Pose X_WO = Pose::FromRollPitchYaw({0.3, -0.2, 0.5}, {0.013, -0.027, -0.1});
   const CompositeField field(nothing, {Standing(pillar, X_WO)}, kClamp_m);
-  std::mt19937 generator(1);
-  std::uniform_real_distribution<double> uniform;
+  RandomStream random(1, "points");
   const Eigen::Vector3d low = pillar->spec().first_center_m, high = pillar->last_center_m();
   for (int n = 0; n < 6000; ++n) {
-    Eigen::Vector3d p_O =
-        low + Eigen::Vector3d(uniform(generator), uniform(generator), uniform(generator))
-                  .cwiseProduct(high - low);
+    Eigen::Vector3d p_O = (low + high) / 2 + UniformPoint(random, 0.5).cwiseProduct(high - low);
     const int axis = n % 3;
     const double outwards = n / 3 % 2 == 0 ? -1e-7 : 1e-7;
     p_O(axis) = outwards < 0 ? low(axis) : high(axis);
@@ -142,12 +139,11 @@ TEST(CompositeField, IsContinuousAlongAWayThroughEverything) {
 TEST(CompositeField, HasTheGradientOfItsValueInTheWorldFrame) {
   const Pose X_WO = Pose::FromRollPitchYaw({0.4, -0.3, 1.1}, {0.1, -0.1, -0.1});
   const CompositeField field(FieldOf(Furniture()), {Standing(PillarField(), X_WO)}, kClamp_m);
-  std::mt19937 generator(2);
-  std::uniform_real_distribution<double> uniform(-0.8, 0.6);
+  RandomStream random(2, "points");
   constexpr double kStep_m = 1e-6;
   int compared = 0, off = 0;
   for (int n = 0; n < 20000; ++n) {
-    const Eigen::Vector3d p(uniform(generator), uniform(generator), uniform(generator));
+    const Eigen::Vector3d p = UniformPoint(random, 0.7) - Eigen::Vector3d::Constant(0.1);
     const DistanceSample sample = field.Sample(p, EpisodeTime(0));
     if (sample.distance_m == kClamp_m) continue;
     Eigen::Vector3d slope;
@@ -206,10 +202,8 @@ TEST(CompositeField, AnswersManyPointsAsItAnswersEach) {
                              return X_WO;
                            }};
   const CompositeField field(FieldOf(Furniture()), {pillar, pillar}, kClamp_m);
-  std::mt19937 generator(3);
-  std::uniform_real_distribution<double> uniform(-1.3, 1.3);
-  const Eigen::Matrix3Xd p =
-      Eigen::Matrix3Xd::NullaryExpr(3, 500, [&] { return uniform(generator); });
+  RandomStream random(3, "points");
+  const Eigen::Matrix3Xd p = UniformPoints(random, 500, 1.3);
   DistanceSamples samples;
   field.SampleMany(p, EpisodeTime(0), samples);
   EXPECT_EQ(num_poses_asked, 2) << "once an object";
@@ -240,17 +234,13 @@ TEST(CompositeField, IsWithin3MillimetresInFreeSpaceForAlmostAllOffsetsAndPoints
   const auto nothing = FieldOf(OccupancyGrid(Grid()));
   const auto pillar = PillarField();
   const Box solid{{5 * kCell_m, 5 * kCell_m, 21 * kCell_m}};
-  std::mt19937 generator(4);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  const auto random = [&] {
-    return Eigen::Vector3d(uniform(generator), uniform(generator), uniform(generator));
-  };
+  RandomStream random(4, "offsets and points");
   std::vector<double> errors_m, near_errors_m;
   for (int n = 0; n < 200; ++n) {
-    const Pose X_WO = Pose::Translation(0.1 * random());
+    const Pose X_WO = Pose::Translation(UniformPoint(random, 0.1));
     const CompositeField field(nothing, {Standing(pillar, X_WO)}, kClamp_m);
     for (int m = 0; m < 1000; ++m) {
-      const Eigen::Vector3d p = 0.8 * random();
+      const Eigen::Vector3d p = UniformPoint(random, 0.8);
       const double exact_m = SignedDistance(solid, X_WO.Inverse() * p);
       const double error_m = std::abs(field.Sample(p, EpisodeTime(0)).distance_m - exact_m);
       if (exact_m > 1.75 * kCell_m && exact_m < kClamp_m - kCell_m) errors_m.push_back(error_m);
@@ -288,15 +278,14 @@ TEST(ShapeField, IsTheClosedFormWithinAFewMillimetresOutside) {
                                {"capsule", Capsule{0.1, 0.3}},
                                {"cylinder", Cylinder{0.15, 0.4}},
                                {"ellipsoid", Ellipsoid{{0.1, 0.2, 0.3}}}};
-  std::mt19937 generator(5);
-  std::uniform_real_distribution<double> uniform(-0.8, 0.8);
+  RandomStream random(5, "points");
   for (const auto& [name, shape] : kShapes) {
     SCOPED_TRACE(name);
     const SdfGrid field = MakeShapeField(shape, kCell_m, kClamp_m);
     int compared = 0;
     double worst_m = 0;
     for (int n = 0; n < 50000; ++n) {
-      const Eigen::Vector3d p(uniform(generator), uniform(generator), uniform(generator));
+      const Eigen::Vector3d p = UniformPoint(random, 0.8);
       const double exact_m = SignedDistance(shape, p);
       if (exact_m < 1.75 * kCell_m || exact_m > kClamp_m) continue;
       const GridSample sample = field.Sample(p);

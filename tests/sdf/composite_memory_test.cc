@@ -10,6 +10,7 @@
 #include "sidestep/sdf/map/object_field.h"
 #include "tests/sdf/box_scene.h"
 #include "tests/support/allocations.h"
+#include "tests/support/random_points.h"
 
 namespace sidestep::sdf {
 namespace {
@@ -31,7 +32,8 @@ TEST(CompositeField, OfManyStepsTakesNoMemoryForThem) {
                                  return Pose::Translation({0.4, 2 - t.seconds(), 0.6});
                                }}},
                              kClamp_m);
-  const Eigen::Matrix3Xd p_WQ = Eigen::Matrix3Xd::Random(3, 640);
+  RandomStream random(1, "points");
+  const Eigen::Matrix3Xd p_WQ = UniformPoints(random, 640, 1);
   DistanceSamples samples;
   int num_lowered = 0;
   for (int step = 0; step < 31; ++step) {

@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <ostream>
-#include <random>
 #include <stdexcept>
 #include <string>
 #include <tuple>
+
+#include "sidestep/core/random.h"
 
 namespace sidestep::sdf {
 namespace {
@@ -56,9 +57,8 @@ void PrintTo(const Case& c, std::ostream* stream) { *stream << c.name; }
 
 OccupancyGrid Random(int nx, int ny, int nz, double share) {
   OccupancyGrid grid = MakeGrid(nx, ny, nz);
-  std::mt19937 generator(static_cast<unsigned>(nx + 100 * ny + 10000 * nz));
-  std::uniform_real_distribution<double> uniform;
-  for (auto& cell : grid.cells) cell = uniform(generator) < share ? 1 : 0;
+  RandomStream random(static_cast<std::uint64_t>(nx + 100 * ny + 10000 * nz), "cells");
+  for (auto& cell : grid.cells) cell = random.Uniform() < share ? 1 : 0;
   return grid;
 }
 

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <functional>
 #include <memory>
-#include <random>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "sidestep/sdf/prediction/registry.h"
+#include "tests/support/random_points.h"
 
 namespace sidestep::sdf {
 namespace {
@@ -29,11 +29,8 @@ std::vector<double> Frames(double first_s, int count, double rate_hz = 30) {
 }
 
 std::vector<TrackedObject> Objects() {
-  std::mt19937 generator(5);
-  const auto jitter = [&](double) -> Eigen::Vector3d {
-    std::uniform_real_distribution<double> uniform(-0.02, 0.02);
-    return {uniform(generator), uniform(generator), uniform(generator)};
-  };
+  RandomStream random(5, "jitter");
+  const auto jitter = [&](double) { return UniformPoint(random, 0.02); };
   const auto line = [](double t_s) { return Eigen::Vector3d(0.4, 2 - 1.4 * t_s, 0.6); };
   return {SeenAt({0.0}, line), SeenAt(Frames(0, 2), line), SeenAt(Frames(1, 60), line),
           SeenAt(Frames(0.5, 40), jitter), SeenAt({1, 1 + 1e-6}, jitter)};

@@ -9,13 +9,13 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <random>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "sidestep/core/random.h"
 #include "sidestep/sdf/map/fast_distance_transform_envelope.h"
 #include "tests/sdf/only_target.h"
 #include "tests/support/allocations.h"
@@ -46,9 +46,9 @@ OccupancyGrid MakeGrid(const Size& size, const IsFilled& is_filled) {
 }
 
 OccupancyGrid Random(const Size& size, double share) {
-  std::mt19937 generator(static_cast<unsigned>(size[0] + 100 * size[1] + 10000 * size[2]));
-  std::uniform_real_distribution<double> uniform;
-  return MakeGrid(size, [&](int, int, int) { return uniform(generator) < share; });
+  const int seed = size[0] + 100 * size[1] + 10000 * size[2];
+  RandomStream random(static_cast<std::uint64_t>(seed), "cells");
+  return MakeGrid(size, [&](int, int, int) { return random.Uniform() < share; });
 }
 
 OccupancyGrid Inverted(OccupancyGrid grid) {
@@ -299,11 +299,14 @@ TEST(TransformLineByEnvelope, IsTheMinimumOverAllSources) {
   constexpr std::uint32_t kFar = 5000;
   const auto squares = [](std::uint32_t k) { return k * k; };
   const auto flat_then_steep = [](std::uint32_t k) { return k < 4 ? 0 : 9 * (k - 4); };
-  std::mt19937 generator(5);
+  RandomStream random(5, "values");
   const auto check = [&](const auto& cost) {
     for (std::size_t n = 1; n < 60; ++n) {
       std::vector<std::uint32_t> values(n);
-      for (std::uint32_t& value : values) value = generator() % 3 == 0 ? kFar : generator() % 900;
+      for (std::uint32_t& value : values) {
+        const bool is_far = random.Bits() % 3 == 0;
+        value = is_far ? kFar : static_cast<std::uint32_t>(random.Bits() % 900);
+      }
       std::vector<std::uint32_t> expected(n, kFar);
       for (std::size_t t = 0; t < n; ++t) {
         for (std::size_t s = 0; s < n; ++s) {

@@ -7,12 +7,12 @@
 #include <cstdio>
 #include <memory>
 #include <ostream>
-#include <random>
 #include <vector>
 
 #include "sidestep/core/shape.h"
 #include "sidestep/sdf/composite_field.h"
 #include "sidestep/sdf/map/object_field.h"
+#include "tests/support/random_points.h"
 
 namespace sidestep::sdf {
 namespace {
@@ -50,13 +50,7 @@ double Quantile99(std::vector<double> values) {
 
 class FieldAccuracy : public ::testing::TestWithParam<Case> {
  protected:
-  Eigen::Vector3d Random(double reach) {
-    std::uniform_real_distribution<double> uniform(-reach, reach);
-    return {uniform(generator_), uniform(generator_), uniform(generator_)};
-  }
-
- private:
-  std::mt19937 generator_{6};
+  RandomStream random_{6, "poses and points"};
 };
 
 TEST_P(FieldAccuracy, IsWithinMillimetresInFreeSpaceWhereverTheShapeStands) {
@@ -66,10 +60,11 @@ TEST_P(FieldAccuracy, IsWithinMillimetresInFreeSpaceWhereverTheShapeStands) {
   const double reach_m = HalfExtents(GetParam().shape).norm() + kMargin_m;
   std::vector<double> inside_m, near_m, margin_m;  // errors, by the true distance
   for (int n = 0; n < 100; ++n) {
-    const Pose X_WO = Pose::FromRollPitchYaw(Random(M_PI), Random(0.1));
+    const Eigen::Vector3d rpy_rad = UniformPoint(random_, M_PI);
+    const Pose X_WO = Pose::FromRollPitchYaw(rpy_rad, UniformPoint(random_, 0.1));
     const CompositeField field(nothing, {{field_O, [&](EpisodeTime) { return X_WO; }}}, kMargin_m);
     for (int m = 0; m < 2000; ++m) {
-      const Eigen::Vector3d p_WQ = X_WO * Random(reach_m);
+      const Eigen::Vector3d p_WQ = X_WO * UniformPoint(random_, reach_m);
       const double exact_m = SignedDistance(GetParam().shape, X_WO.Inverse() * p_WQ);
       const double error_m = std::abs(field.Sample(p_WQ, EpisodeTime(0)).distance_m - exact_m);
       if (exact_m > kMargin_m - kCell_m) continue;

@@ -8,10 +8,10 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <functional>
-#include <random>
 #include <string>
 #include <vector>
 
+#include "sidestep/core/random.h"
 #include "sidestep/sdf/prediction/kalman_ca.h"
 #include "sidestep/sdf/prediction/kalman_cv.h"
 #include "sidestep/sdf/prediction/kalman_turn.h"
@@ -34,40 +34,30 @@ const Model kModels[] = {{"kalman_cv", kConstantVelocity, 2},
                          // Later, the angle turned is too uncertain for a linear rule.
                          {"kalman_turn", kCoordinatedTurn, 1}};
 
-class Random {
- public:
-  explicit Random(unsigned seed) : generator_(seed) {}
-  double Normal() { return normal_(generator_); }
-  double Uniform() { return uniform_(generator_); }
-  // Of a covariance that may be singular.
-  MotionVector Normal(const MotionMatrix& covariance) {
-    const Eigen::LDLT<MotionMatrix> factors(covariance);
-    MotionVector z;
-    for (int i = 0; i < kMotionDims; ++i)
-      z(i) = Normal() * std::sqrt(std::max(0.0, factors.vectorD()(i)));
-    return factors.transpositionsP().transpose() * MotionVector(factors.matrixL() * z);
-  }
+// Of a covariance that may be singular.
+MotionVector Normal(const MotionMatrix& covariance, RandomStream& random) {
+  const Eigen::LDLT<MotionMatrix> factors(covariance);
+  MotionVector z;
+  for (int i = 0; i < kMotionDims; ++i)
+    z(i) = random.Normal() * std::sqrt(std::max(0.0, factors.vectorD()(i)));
+  return factors.transpositionsP().transpose() * MotionVector(factors.matrixL() * z);
+}
 
- private:
-  std::mt19937 generator_;
-  std::normal_distribution<double> normal_;
-  std::uniform_real_distribution<double> uniform_;
-};
-
-MotionVector DrawFirst(const MotionModel& model, Random& random) {
+MotionVector DrawFirst(const MotionModel& model, RandomStream& random) {
   MotionFilter prior(model, {EpisodeTime(0), Eigen::Vector3d::Zero(), kSigma_m});
-  MotionVector x = random.Normal(prior.estimate().P);
+  MotionVector x = Normal(prior.estimate().P, random);
   x.head<3>().setZero();
   // What the model forgets does not move it.
   return model.move(x, 0, nullptr);
 }
 
-MotionVector Step(const MotionModel& model, const MotionVector& x, double dt_s, Random& random) {
-  return model.move(model.move(x, dt_s, nullptr) + random.Normal(model.noise(dt_s)), 0, nullptr);
+MotionVector Step(const MotionModel& model, const MotionVector& x, double dt_s,
+                  RandomStream& random) {
+  return model.move(model.move(x, dt_s, nullptr) + Normal(model.noise(dt_s), random), 0, nullptr);
 }
 
-Sighting See(double t_s, const MotionVector& x, Random& random) {
-  const Eigen::Vector3d noise(random.Normal(), random.Normal(), random.Normal());
+Sighting See(double t_s, const MotionVector& x, RandomStream& random) {
+  const Eigen::Vector3d noise{random.Normal(), random.Normal(), random.Normal()};
   return {EpisodeTime(t_s), x.head<3>() + kSigma_m * noise, kSigma_m};
 }
 
@@ -79,7 +69,7 @@ class Consistency : public ::testing::TestWithParam<Model> {};
 
 // The mean of chi^2 with 3 degrees of freedom is 3 and its variance 6.
 TEST_P(Consistency, InnovationsAreAsLargeAsStated) {
-  Random random(1);
+  RandomStream random(1, "motion");
   double sum = 0;
   int count = 0;
   for (int run = 0; run < kNumRuns; ++run) {
@@ -99,7 +89,7 @@ TEST_P(Consistency, PredictionErrorsAreAsLargeAsStated) {
   const auto predictor = MakePredictor(GetParam().predictor);
   for (const double ahead_s : {0.0, 0.1, 0.3, 0.5, 1.0, 2.0}) {
     if (ahead_s > GetParam().consistent_for_s) break;
-    Random random(2);
+    RandomStream random(2, "motion");
     double sum = 0;
     for (int run = 0; run < kNumRuns; ++run) {
       MotionVector x = DrawFirst(GetParam().model, random);
@@ -123,9 +113,9 @@ INSTANTIATE_TEST_SUITE_P(Models, Consistency, ::testing::ValuesIn(kModels),
 class EveryModel : public ::testing::TestWithParam<Model> {};
 
 TEST_P(EveryModel, HasTheJacobianOfItsMotion) {
-  Random random(3);
+  RandomStream random(3, "motion");
   for (const double rate : {0.0, 1e-6, 1e-3, 0.7, -1.5}) {
-    MotionVector x = random.Normal(MotionMatrix::Identity());
+    MotionVector x = Normal(MotionMatrix::Identity(), random);
     x(kTurn) = rate;
     for (const double dt_s : {1 / kRate_hz, 0.5, -0.3}) {
       MotionMatrix F;
@@ -142,8 +132,8 @@ TEST_P(EveryModel, HasTheJacobianOfItsMotion) {
 }
 
 TEST_P(EveryModel, MovesTwiceHalfAsLongToTheSamePlace) {
-  Random random(4);
-  MotionVector x = random.Normal(MotionMatrix::Identity());
+  RandomStream random(4, "motion");
+  MotionVector x = Normal(MotionMatrix::Identity(), random);
   const MotionVector once = GetParam().model.move(x, 0.8, nullptr);
   const MotionVector twice =
       GetParam().model.move(GetParam().model.move(x, 0.4, nullptr), 0.4, nullptr);
@@ -217,7 +207,7 @@ TEST(VoxelCentroids, BrakingIsFollowedBestByTheFilterThatAccelerates) {
 TEST(Imm, KnowsRoughlyHowWrongItIs) {
   const auto predictor = MakePredictor("imm");
   for (const double ahead_s : {0.0, 0.1, 0.3}) {
-    Random random(5);
+    RandomStream random(5, "motion");
     double sum = 0;
     for (int run = 0; run < kNumRuns; ++run) {
       std::size_t active = static_cast<std::size_t>(run) % std::size(kModels);

@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <random>
 #include <stdexcept>
 #include <vector>
 
+#include "sidestep/core/random.h"
 #include "tests/sdf/box_scene.h"
 
 namespace sidestep::sdf {
@@ -46,10 +46,10 @@ TEST(OccupancyFromScan, LeavesOutWhatIsOutsideTheGridOrNotANumber) {
 
 // Scans of a sensor that is disturbed in every way, one after the other.
 std::vector<Scan> DisturbedScans(const GridSpec& grid) {
-  std::mt19937_64 random(3);
-  std::uniform_real_distribution<double> anywhere(-0.2, grid.size[0] * grid.cell_m + 0.2);
+  RandomStream random(3, "points");
+  const double end_m = grid.size[0] * grid.cell_m + 0.2;
   const auto points = [&](int count) -> Eigen::Matrix3Xd {
-    return Eigen::Matrix3Xd::NullaryExpr(3, count, [&] { return anywhere(random); });
+    return Eigen::Matrix3Xd::NullaryExpr(3, count, [&] { return random.Uniform(-0.2, end_m); });
   };
   const Eigen::Matrix3Xd resting = points(200);
   Eigen::Matrix3Xd with_nan = resting;

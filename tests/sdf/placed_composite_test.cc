@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -14,6 +13,7 @@
 #include "sidestep/sdf/map/distance_transform.h"
 #include "sidestep/sdf/map/object_field.h"
 #include "tests/sdf/only_target.h"
+#include "tests/support/random_points.h"
 
 namespace sidestep::sdf {
 namespace {
@@ -21,18 +21,9 @@ namespace {
 constexpr double kCell_m = 0.05;
 constexpr double kClamp_m = 0.3;
 
-double Uniform(std::mt19937_64& random, double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(random);
-}
-
-Eigen::Vector3d UniformPoint(std::mt19937_64& random, double reach) {
-  return {Uniform(random, -reach, reach), Uniform(random, -reach, reach),
-          Uniform(random, -reach, reach)};
-}
-
-OccupancyGrid RandomCells(std::mt19937_64& random, const std::array<int, 3>& size, double share) {
+OccupancyGrid RandomCells(RandomStream& random, const std::array<int, 3>& size, double share) {
   OccupancyGrid grid({Eigen::Vector3d::Constant(-1), kCell_m, size});
-  for (auto& cell : grid.cells) cell = Uniform(random, 0, 1) < share ? 1 : 0;
+  for (auto& cell : grid.cells) cell = random.Uniform() < share ? 1 : 0;
   return grid;
 }
 
@@ -44,7 +35,7 @@ struct World {
 };
 
 // Objects of a few shapes, turned any way, all over a static grid and beyond it.
-World RandomWorld(std::mt19937_64& random, const std::array<int, 3>& size, int num_objects,
+World RandomWorld(RandomStream& random, const std::array<int, 3>& size, int num_objects,
                   bool tight) {
   World world{ComputeSignedDistance(RandomCells(random, size, 0.003)), {}, {}};
   world.shapes.push_back(
@@ -55,22 +46,22 @@ World RandomWorld(std::mt19937_64& random, const std::array<int, 3>& size, int n
   world.shapes.push_back(MakeShapeField(Box{{0.3, 0.02, 0.1}}, kCell_m, kClamp_m));
   for (int n = 0; n < num_objects; ++n) {
     const SdfGrid& field = world.shapes[static_cast<std::size_t>(n) % world.shapes.size()];
-    const Pose X_WO =
-        n % 3 == 0 ? Pose::Translation(UniformPoint(random, 1.2))
-                   : Pose::FromRollPitchYaw(UniformPoint(random, 3), UniformPoint(random, 1.2));
+    const Eigen::Vector3d p_WO = UniformPoint(random, 1.2);
+    const Pose X_WO = n % 3 == 0 ? Pose::Translation(p_WO)
+                                 : Pose::FromRollPitchYaw(UniformPoint(random, 3), p_WO);
     world.objects.push_back({&field, tight ? TightBound(field) : DomainBound(field), X_WO});
   }
   return world;
 }
 
 // The floor, a slope, and shapes that stand in the grid and beyond it.
-StaticSolids SomeSolids(std::mt19937_64& random) {
+StaticSolids SomeSolids(RandomStream& random) {
   StaticSolids solids;
   solids.half_spaces = {{{0, 0, 1}, -0.9}, {{0.36, -0.48, 0.8}, -1.1}};
   const Shape shapes[] = {Box{{0.5, 0.02, 0.4}}, Cylinder{0.05, 0.6}, Ellipsoid{{0.1, 0.2, 0.3}}};
   for (const Shape& shape : shapes) {
-    solids.shapes.push_back(
-        {shape, Pose::FromRollPitchYaw(UniformPoint(random, 3), UniformPoint(random, 1.2))});
+    const Eigen::Vector3d p_WO = UniformPoint(random, 1.2);
+    solids.shapes.push_back({shape, Pose::FromRollPitchYaw(UniformPoint(random, 3), p_WO)});
   }
   return solids;
 }
@@ -95,11 +86,11 @@ DistanceSample Least(const World& world, const Eigen::Vector3d& p_WQ) {
 }
 
 // Anywhere, at centres, on the borders of the static grid and just beyond.
-Eigen::Matrix3Xd Points(std::mt19937_64& random, const SdfGrid& grid, int count) {
+Eigen::Matrix3Xd Points(RandomStream& random, const SdfGrid& grid, int count) {
   Eigen::Matrix3Xd p_WQ(3, count);
   for (int s = 0; s < count; ++s) {
     Eigen::Vector3d p = UniformPoint(random, 1.5);
-    const auto axis = static_cast<Eigen::Index>(random() % 3);
+    const auto axis = static_cast<Eigen::Index>(random.Bits() % 3);
     const double low = grid.spec().first_center_m(axis), high = grid.last_center_m()(axis);
     if (s % 4 == 1) p = grid.spec().Center(s % grid.spec().size[0], 0, s % grid.spec().size[2]);
     if (s % 8 == 2) p(axis) = low;
@@ -115,7 +106,7 @@ class PlacedCompositeOn : public ::testing::TestWithParam<std::int64_t> {};
 
 TEST_P(PlacedCompositeOn, AnswersBatchesOfAnySizeAsItAnswersEachPoint) {
   const OnlyTarget target(GetParam());
-  std::mt19937_64 random(1);
+  RandomStream random(1, "scene");
   for (const std::array<int, 3>& size :
        {std::array<int, 3>{40, 33, 41}, {2, 2, 2}, {40, 1, 40}, {1, 1, 1}}) {
     for (const int num_objects : {0, 1, 5, 16, 40}) {
@@ -149,7 +140,7 @@ TEST_P(PlacedCompositeOn, AnswersBatchesOfAnySizeAsItAnswersEachPoint) {
 
 TEST_P(PlacedCompositeOn, IsTheLeastOfAllFieldsHoweverManyThereAre) {
   const OnlyTarget target(GetParam());
-  std::mt19937_64 random(2);
+  RandomStream random(2, "scene");
   for (const int num_objects : {0, 1, 3, 15, 16, 17, 64, 128, 300}) {
     for (const bool tight : {false, true}) {
       SCOPED_TRACE(testing::Message() << num_objects << " objects, tight bounds: " << tight);
@@ -174,7 +165,7 @@ TEST_P(PlacedCompositeOn, IsTheLeastOfAllFieldsHoweverManyThereAre) {
 
 TEST_P(PlacedCompositeOn, HasTheGradientOfItsValue) {
   const OnlyTarget target(GetParam());
-  std::mt19937_64 random(3);
+  RandomStream random(3, "scene");
   World world = RandomWorld(random, {40, 33, 41}, 20, true);
   world.exact = SomeSolids(random);
   world.exact.shapes.pop_back();  // the ellipsoid's gradient is not a closed form
@@ -203,9 +194,8 @@ TEST_P(PlacedCompositeOn, KnowsTheFloorExactlyInsideTheGridAndBeyondIt) {
                         AlignedVector<float>(40 * 40 * 40, 1000.0F));
   const ExactSolids floor({{}, {{{0, 0, 1}, 0.123}}});
   const PlacedComposite field(nothing, {}, kClamp_m, &floor);
-  std::mt19937_64 random(5);
-  Eigen::Matrix3Xd p_WQ(3, 1000);
-  for (Eigen::Index s = 0; s < p_WQ.cols(); ++s) p_WQ.col(s) = UniformPoint(random, 3);
+  RandomStream random(5, "scene");
+  const Eigen::Matrix3Xd p_WQ = UniformPoints(random, 1000, 3);
   DistanceSamples samples;
   field.SampleMany(p_WQ, samples);
   int num_outside = 0, num_by_floor = 0;
@@ -227,7 +217,7 @@ INSTANTIATE_TEST_SUITE_P(Target, PlacedCompositeOn,
                          [](const auto& test) { return std::string(hwy::TargetName(test.param)); });
 
 TEST(TightBound, IsNeverAboveTheFieldAndNearIt) {
-  std::mt19937_64 random(4);
+  RandomStream random(4, "scene");
   const World world = RandomWorld(random, {3, 3, 3}, 0, true);
   for (const SdfGrid& field : world.shapes) {
     const FieldBound bound = TightBound(field);

@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <random>
+
+#include "tests/support/random_points.h"
 
 namespace sidestep::sdf {
 namespace {
@@ -37,11 +38,10 @@ bool Filled(const OccupancyGrid& grid, const Eigen::Vector3d& p_W) {
 }
 
 TEST(CellsOnTheWay, AreThoseThatManySamplesOfTheLineFallInto) {
-  std::mt19937 generator(1);
-  std::uniform_real_distribution<double> anywhere(-1.5, 1.5);
+  RandomStream random(1, "lines");
   for (int run = 0; run < 500; ++run) {
-    const Eigen::Vector3d start(anywhere(generator), anywhere(generator), anywhere(generator));
-    const Eigen::Vector3d end(anywhere(generator), anywhere(generator), anywhere(generator));
+    const Eigen::Vector3d start = UniformPoint(random, 1.5);
+    const Eigen::Vector3d end = UniformPoint(random, 1.5);
     std::vector<std::size_t> cells;
     VisitCellsOnTheWay(kGrid, start, end, &cells);
     std::vector<std::size_t> sampled;

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <random>
 #include <stdexcept>
 #include <vector>
 
 #include "sidestep/sdf/grid_field.h"
+#include "tests/support/random_points.h"
 
 namespace sidestep::sdf {
 namespace {
@@ -18,19 +18,15 @@ namespace {
 GridSpec Spec() { return {{-1, -1, -1}, 0.04, {96, 7, 5}}; }
 
 SdfGrid RandomGrid(const GridSpec& spec) {
-  std::mt19937 generator(3);
-  std::uniform_real_distribution<float> uniform(-0.5F, 0.5F);
+  RandomStream random(3, "values");
   AlignedVector<float> values(spec.num_cells());
-  for (float& value : values) value = uniform(generator);
+  for (float& value : values) value = static_cast<float>(random.Uniform(-0.5, 0.5));
   return SdfGrid(spec, values);
 }
 
-Eigen::Vector3d RandomPointWithin(const SdfGrid& grid, std::mt19937& generator) {
-  std::uniform_real_distribution<double> uniform;
-  const Eigen::Vector3d extent = grid.last_center_m() - grid.spec().first_center_m;
-  return grid.spec().first_center_m +
-         extent.cwiseProduct(
-             Eigen::Vector3d(uniform(generator), uniform(generator), uniform(generator)));
+Eigen::Vector3d RandomPointWithin(const SdfGrid& grid, RandomStream& random) {
+  const Eigen::Vector3d low = grid.spec().first_center_m, high = grid.last_center_m();
+  return (low + high) / 2 + UniformPoint(random, 0.5).cwiseProduct(high - low);
 }
 
 TEST(SdfGrid, IsExactAtEveryCellCentre) {
@@ -54,20 +50,20 @@ TEST(SdfGrid, ReproducesATrilinearFunction) {
     for (int j = 0; j < 7; ++j)
       for (int i = 0; i < 96; ++i) values.push_back(static_cast<float>(f(spec.Center(i, j, k))));
   const SdfGrid grid(spec, values);
-  std::mt19937 generator(1);
+  RandomStream random(1, "points");
   for (int n = 0; n < 1000; ++n) {
-    const Eigen::Vector3d p = RandomPointWithin(grid, generator);
+    const Eigen::Vector3d p = RandomPointWithin(grid, random);
     EXPECT_NEAR(grid.Sample(p).distance_m, f(p), 1e-6);
   }
 }
 
 TEST(SdfGrid, HasTheGradientOfItsInterpolant) {
   const SdfGrid grid = RandomGrid(Spec());
-  std::mt19937 generator(2);
+  RandomStream random(2, "points");
   const double step = 1e-5;
   int compared = 0;
   for (int n = 0; n < 1000; ++n) {
-    const Eigen::Vector3d p = RandomPointWithin(grid, generator);
+    const Eigen::Vector3d p = RandomPointWithin(grid, random);
     // Within a cell the interpolant is smooth; a difference across two cells means nothing.
     const Eigen::Array3d u = (p - grid.spec().first_center_m).array() / grid.spec().cell_m;
     if (((u - u.round()).abs() < 2 * step / grid.spec().cell_m).any()) continue;

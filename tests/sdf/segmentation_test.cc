@@ -6,9 +6,10 @@
 #include <array>
 #include <cstdint>
 #include <cstdlib>
-#include <random>
 #include <stdexcept>
 #include <vector>
+
+#include "sidestep/core/random.h"
 
 namespace sidestep::sdf {
 namespace {
@@ -45,7 +46,7 @@ std::vector<int> LabelByRelaxation(const OccupancyGrid& grid) {
 }
 
 TEST(Segmentation, EqualsBruteForceOnRandomGrids) {
-  std::mt19937 generator(1);
+  RandomStream random(1, "cells");
   const std::array<int, 3> sizes[] = {{9, 8, 7}, {30, 1, 5}, {1, 1, 40}, {6, 6, 6},
                                       {1, 1, 1}, {70, 5, 4}, {3, 2, 200}};
   for (const std::array<int, 3>& size : sizes) {
@@ -53,9 +54,7 @@ TEST(Segmentation, EqualsBruteForceOnRandomGrids) {
       SCOPED_TRACE(testing::Message()
                    << size[0] << 'x' << size[1] << 'x' << size[2] << ' ' << share);
       OccupancyGrid grid({{0, 0, 0}, 0.1, size});
-      for (auto& cell : grid.cells) {
-        cell = std::uniform_real_distribution<double>()(generator) < share ? 1 : 0;
-      }
+      for (auto& cell : grid.cells) cell = random.Uniform() < share ? 1 : 0;
       std::vector<int> labels(grid.cells.size(), -1);
       int last_seed = -1;
       for (const Component& component : FindComponents(grid)) {
@@ -89,13 +88,13 @@ TEST(Segmentation, JoinsNothingInAGridOfLonelyCellsAndAllOfACheckerboard) {
 }
 
 TEST(Segmentation, TakesCellsThatAreLeftOutForFree) {
-  std::mt19937 generator(2);
+  RandomStream random(2, "cells");
   OccupancyGrid grid({{0, 0, 0}, 0.1, {67, 11, 9}});
   std::vector<std::uint8_t> left_out(grid.cells.size());
   OccupancyGrid rest = grid;
   for (std::size_t n = 0; n < grid.cells.size(); ++n) {
-    grid.cells[n] = generator() % 4 == 0;
-    left_out[n] = generator() % 2;
+    grid.cells[n] = random.Bits() % 4 == 0;
+    left_out[n] = random.Bits() % 2;
     rest.cells[n] = grid.cells[n] != 0 && left_out[n] == 0;
   }
   const std::vector<Component> components = FindComponents(grid, left_out);

@@ -12,6 +12,7 @@
 
 #include "sidestep/core/shape.h"
 #include "tests/sdf/box_scene.h"
+#include "tests/support/random_points.h"
 
 namespace sidestep::sdf {
 namespace {
@@ -244,8 +245,9 @@ TEST(WorldModel, AsksEachTrueMotionOnceAQueryHoweverManyThereAre) {
   world->Observe(ScanAt(EpisodeTime(0)));
   const auto field = world->MakeField();
   num_asked = 0;
+  RandomStream random(1, "points");
   DistanceSamples samples;
-  field->SampleMany(Eigen::Matrix3Xd::Random(3, 100), EpisodeTime(0.3), samples);
+  field->SampleMany(UniformPoints(random, 100, 1), EpisodeTime(0.3), samples);
   EXPECT_EQ(num_asked, kObstacles);
 }
 

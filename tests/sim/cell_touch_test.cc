@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <ostream>
-#include <random>
 #include <string>
 
 #include "sidestep/sim/convex_distance.h"
 #include "tests/sim/small_model.h"
+#include "tests/support/random_points.h"
 
 namespace sidestep::sim {
 namespace {
@@ -37,24 +37,21 @@ double CubeDistance(const Case& c, const Pose& X_WO, const Vector3d& p_WCenter, 
 class TouchedCubes : public testing::TestWithParam<Case> {};
 
 TEST_P(TouchedCubes, AreThoseWhoseDistanceToTheShapeIsNone) {
-  std::mt19937 generator(3);
-  std::uniform_real_distribution<double> uniform(-1, 1);
+  RandomStream random(3, "poses");
   const Vector3d half = HalfExtents(GetParam().shape);
   int num_touched = 0, num_free = 0, num_close = 0;
   for (int trial = 0; trial < 60; ++trial) {
     // Turned any way, a quarter turn, and hardly at all.
-    Pose X_WO = RandomPose(0.5, &generator);
+    Pose X_WO = RandomPose(random, 0.5);
     if (trial % 4 == 1) X_WO = Pose::FromRollPitchYaw({0, 0, M_PI / 2}, X_WO.translation());
     if (trial % 4 == 2) X_WO = Pose::FromRollPitchYaw({0, 1e-9, 1e-5}, X_WO.translation());
     const CubeTouch touch(GetParam().shape, X_WO.rotation().toRotationMatrix(), X_WO.translation(),
                           kEdge_m);
     for (int n = 0; n < 400; ++n) {
-      Vector3d p_O =
-          Vector3d(uniform(generator), uniform(generator), uniform(generator)).cwiseProduct(half);
+      Vector3d p_O = UniformPoint(random, 1).cwiseProduct(half);
       // Half of them about the surface, where it is hard to tell.
       if (n % 2 == 0) p_O(n / 2 % 3) = (n % 4 == 0 ? 1 : -1) * half(n / 2 % 3);
-      const Vector3d p_W = X_WO * p_O + kEdge_m * Vector3d(uniform(generator), uniform(generator),
-                                                           uniform(generator));
+      const Vector3d p_W = X_WO * p_O + UniformPoint(random, kEdge_m);
       const bool certainly = CubeDistance(GetParam(), X_WO, p_W, kEdge_m - 2 * kMargin_m) == 0;
       const bool certainly_not = CubeDistance(GetParam(), X_WO, p_W, kEdge_m + 2 * kMargin_m) > 0;
       if (!certainly && !certainly_not) {

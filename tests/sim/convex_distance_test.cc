@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 #include <string>
 
 #include "sidestep/core/pose.h"
 #include "tests/sim/small_model.h"
+#include "tests/support/random_points.h"
 
 namespace sidestep::sim {
 namespace {
@@ -87,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(ConvexDistance, ClosedForm, ::testing::ValuesIn(kCases)
                          [](const auto& test) { return std::string(test.param.name); });
 
 TEST(ConvexDistance, OfAHullIsThatOfTheBoxWhereverItsFrameIs) {
-  std::mt19937 generator(11);
+  RandomStream random(11, "poses");
   const Vector3d half(0.1, 0.2, 0.3);
   const ConvexSolid box{Core::kBox, half, {}, 0};
   const ConvexSolid others[] = {Ball(0.1),
@@ -97,8 +97,8 @@ TEST(ConvexDistance, OfAHullIsThatOfTheBoxWhereverItsFrameIs) {
                                 HullOfBox({-2, 1, 4}, half)};
   for (const ConvexSolid& other : others) {
     for (int trial = 0; trial < 200; ++trial) {
-      const Pose X_AB = RandomPose(1.5, &generator);
-      const Vector3d offset = RandomPose(20, &generator).translation();
+      const Pose X_AB = RandomPose(random, 1.5);
+      const Vector3d offset = UniformPoint(random, 20);
       const double expected = ConvexDistance(box, other, At(X_AB));
       const Pose X_moved(X_AB.rotation(), X_AB.translation() + offset);
       EXPECT_NEAR(ConvexDistance(HullOfBox(offset, half), other, At(X_moved)), expected,

@@ -9,6 +9,7 @@
 
 #include "sidestep/core/shape.h"
 #include "tests/sim/small_model.h"
+#include "tests/support/random_points.h"
 
 namespace sidestep::sim {
 namespace {
@@ -171,10 +172,10 @@ class EveryPair : public testing::TestWithParam<Case> {};
 TEST_P(EveryPair, IsAsFarApartAsTheClosedFormSays) {
   SmallModel m = TwoGeoms(GetParam().geom1, GetParam().geom2);
   const GeomDistance distance(*m.model);
-  std::mt19937 generator(11);
+  RandomStream random(11, "poses");
   int num_apart = 0, num_overlapping = 0;
-  for (int trial = 0; trial < 300; ++trial) {
-    const Pose X_W1 = RandomPose(0.6, &generator), X_W2 = RandomPose(0.6, &generator);
+  for (int trial = 0; trial < 1000; ++trial) {
+    const Pose X_W1 = RandomPose(random, 0.6), X_W2 = RandomPose(random, 0.6);
     m.Place(0, X_W1);
     m.Place(1, X_W2);
     const double wanted = GetParam().distance(X_W1, X_W2);
@@ -261,9 +262,9 @@ TEST_P(AlignedPair, IsAsFarApartAsItsNearestFeatures) {
   const AlignedCase& c = GetParam();
   SmallModel m = TwoGeoms(c.geom1, c.geom2);
   const GeomDistance distance(*m.model);
-  std::mt19937 generator(3);
+  RandomStream random(3, "poses");
   for (int trial = 0; trial < 20; ++trial) {  // the same pair, seen from elsewhere
-    const Pose X_WA = trial == 0 ? Pose() : RandomPose(0.5, &generator);
+    const Pose X_WA = trial == 0 ? Pose() : RandomPose(random, 0.5);
     m.Place(0, X_WA * Pose::FromRollPitchYaw(c.rpy1_rad, {0, 0, 0}));
     m.Place(1, X_WA * Pose::FromRollPitchYaw(c.rpy2_rad, c.p_12));
     EXPECT_NEAR(distance.Distance(*m.data, 0, 1), c.distance_m, kTolerance_m);
@@ -283,10 +284,10 @@ TEST(GeomDistance, TakesAMeshForItsConvexHull) {
     SmallModel m = TwoGeoms("type='mesh' mesh='m'", other, mesh);
     SmallModel box = TwoGeoms("type='box' size='0.1 0.2 0.3'", other);
     const GeomDistance distance(*m.model), box_distance(*box.model);
-    std::mt19937 generator(5);
+    RandomStream random(5, "poses");
     for (int trial = 0; trial < 50; ++trial) {
       for (int body = 0; body < 2; ++body) {
-        const Pose X_WO = RandomPose(0.7, &generator);
+        const Pose X_WO = RandomPose(random, 0.7);
         m.Place(body, X_WO);
         box.Place(body, X_WO);
       }

@@ -10,6 +10,7 @@
 #include "sidestep/core/shape.h"
 #include "sidestep/sim/mujoco_pose.h"
 #include "tests/sim/small_model.h"
+#include "tests/support/random_points.h"
 
 namespace sidestep::sim {
 namespace {
@@ -83,14 +84,15 @@ TEST_P(EveryGeomType, MarksExactlyTheCellsWhoseCentreIsInside) {
   const std::string geom = std::string("<geom ") + GetParam().geom + "/>";
   SmallModel m("<body mocap='true'>" + geom + "</body>",
                std::string("<asset>") + GetParam().asset + "</asset>");
-  std::mt19937 generator(7);
+  RandomStream random(7, "heights and poses");
   if (m.model->nhfielddata > 0) {
-    std::uniform_real_distribution<float> height(0, 1);
-    for (int i = 0; i < m.model->nhfielddata; ++i) m.model->hfield_data[i] = height(generator);
+    for (int i = 0; i < m.model->nhfielddata; ++i) {
+      m.model->hfield_data[i] = static_cast<float>(random.Uniform());
+    }
   }
   const Rasteriser rasteriser(*m.model, CellRule::kCentre);
   for (int trial = 0; trial < 12; ++trial) {
-    const Pose X_WO = RandomPose(/*reach_m=*/0.6, &generator);
+    const Pose X_WO = RandomPose(random, /*reach_m=*/0.6);
     m.Place(0, X_WO);
     OccupancyGrid grid(kGrid);
     const std::vector<std::size_t> filled = rasteriser.Fill(*m.data, 0, &grid);
@@ -128,10 +130,11 @@ TEST_P(EveryGeomType, MarksTheCellsThatItReachesIntoIfToldSo) {
   const std::string geom = std::string("<geom ") + GetParam().geom + "/>";
   SmallModel m("<body mocap='true'>" + geom + "</body>",
                std::string("<asset>") + GetParam().asset + "</asset>");
-  std::mt19937 generator(8);
+  RandomStream random(8, "heights and poses");
   if (m.model->nhfielddata > 0) {
-    std::uniform_real_distribution<float> height(0, 1);
-    for (int i = 0; i < m.model->nhfielddata; ++i) m.model->hfield_data[i] = height(generator);
+    for (int i = 0; i < m.model->nhfielddata; ++i) {
+      m.model->hfield_data[i] = static_cast<float>(random.Uniform());
+    }
   }
   const GridSpec spec{{-0.78, -0.8, -0.82}, 0.1, {17, 16, 16}};
   const Rasteriser rasteriser(*m.model, CellRule::kTouched);
@@ -139,7 +142,7 @@ TEST_P(EveryGeomType, MarksTheCellsThatItReachesIntoIfToldSo) {
   constexpr int kSteps = 8;
   const double step_m = spec.cell_m / kSteps;
   for (int trial = 0; trial < 2; ++trial) {
-    const Pose X_WO = RandomPose(/*reach_m=*/0.4, &generator);
+    const Pose X_WO = RandomPose(random, /*reach_m=*/0.4);
     m.Place(0, X_WO);
     OccupancyGrid grid(spec), by_centres(spec);
     rasteriser.Fill(*m.data, 0, &grid);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <random>
 #include <string>
 
 #include "sidestep/core/pose.h"
@@ -34,16 +33,5 @@ struct SmallModel {
     return mj_name2id(model.get(), mjOBJ_GEOM, name.c_str());
   }
 };
-
-/// Any orientation, and a position within `reach_m` of the origin along each axis.
-inline Pose RandomPose(double reach_m, std::mt19937* generator) {
-  std::normal_distribution<double> normal;
-  std::uniform_real_distribution<double> uniform(-reach_m, reach_m);
-  Eigen::Vector4d q;
-  for (double& x : q) x = normal(*generator);
-  Eigen::Vector3d p;
-  for (double& x : p) x = uniform(*generator);
-  return Pose(Eigen::Quaterniond(q), p);
-}
 
 }  // namespace sidestep::sim
