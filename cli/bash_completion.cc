@@ -3,6 +3,7 @@
 #include <array>
 
 #include "sidestep/cli/command_tree.h"
+#include "sidestep/core/joined.h"
 
 namespace sidestep::cli {
 namespace {
@@ -15,12 +16,6 @@ struct Listed {
 constexpr std::array kListed = {Listed{"SCENARIO", "scenarios"}, Listed{"--knowledge", "knowledge"},
                                 Listed{"--case", "knowledge"}, Listed{"--predictor", "predictors"},
                                 Listed{"--planner", "planners"}};
-
-std::string Join(const std::vector<std::string>& words, const char* separator) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : separator) + word;
-  return text;
-}
 
 // The list of values that `name` takes, as a command in the script; empty if they are free.
 std::string ValuesOf(const std::string& name) {
@@ -47,10 +42,10 @@ std::string Branches(const std::string& call, const CLI::App& command) {
     if (!TakesValue(*option)) continue;
     const std::string list = ValuesOf(
         "--" + (option->get_lnames().empty() ? std::string() : option->get_lnames().front()));
-    values += "        " + Join(flags, "|") + ") words=\"" + list + "\" ;;\n";
+    values += "        " + Joined(flags, "|") + ") words=\"" + list + "\" ;;\n";
   }
   std::string text = "    \"" + call + "\")\n      case \"$previous\" in\n" + values +
-                     "        *) words=\"" + Join(words, " ") + "\" ;;\n      esac\n      ;;\n";
+                     "        *) words=\"" + Joined(words, " ") + "\" ;;\n      esac\n      ;;\n";
   for (const CLI::App* const inner : Commands(command)) {
     text += Branches(call + " " + inner->get_name(), *inner);
   }

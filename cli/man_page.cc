@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "sidestep/cli/command_tree.h"
+#include "sidestep/core/joined.h"
 
 namespace sidestep::cli {
 namespace {
@@ -61,9 +62,7 @@ std::string Options(const CLI::App& command) {
       text += Entry(Argument(*option), option->get_description());
       continue;
     }
-    std::string names;
-    for (const std::string& name : Flags(*option))
-      names += (names.empty() ? "" : ", ") + Bold(name);
+    std::string names = Joined(Flags(*option), ", ", &Bold);
     if (TakesValue(*option)) names += " " + Italic(option->get_type_name());
     text += Entry(names, option->get_description());
   }
@@ -102,11 +101,10 @@ std::string Page(const std::string& call, const CLI::App& command, const CLI::Ap
   }
   text += ".SH SEE ALSO\n";
   if (!is_program) return text + Bold(program.get_name()) + "(1)\n";
-  std::string pages;
-  for (const CLI::App* const inner : commands) {
-    pages += (pages.empty() ? "" : ",\n") + Bold(PageName(call + " " + inner->get_name())) + "(1)";
-  }
-  return text + pages + "\n";
+  const auto page = [&](const CLI::App* inner) {
+    return Bold(PageName(call + " " + inner->get_name())) + "(1)";
+  };
+  return text + Joined(commands, ",\n", page) + "\n";
 }
 
 }  // namespace

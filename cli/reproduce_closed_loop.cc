@@ -22,14 +22,9 @@ struct ClosedLoopCommand {
 };
 
 int Run(const ClosedLoopCommand& command) {
-  bench::PublishedRates published;
-  if (!command.published_predictions.empty()) {
-    published.predictions =
-        bench::CsvTable::Read(command.published_predictions, {bench::kVoxelsColumn});
-  }
-  if (!command.published_loops.empty()) {
-    published.loops = bench::CsvTable::Read(command.published_loops, {bench::kVoxelsColumn});
-  }
+  const bench::PublishedRates published = {
+      ReadPublished(command.published_predictions, {bench::kVoxelsColumn}),
+      ReadPublished(command.published_loops, {bench::kVoxelsColumn})};
   const DataPaths paths = FindDataPaths();
   const Problem problem = LoadProblem("hsr_walkway", {}, paths);
   const std::string out =

@@ -5,8 +5,15 @@
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/reproduce.h"
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/joined.h"
 
 namespace sidestep::cli {
+
+std::optional<bench::CsvTable> ReadPublished(const std::string& path,
+                                             const std::vector<std::string>& columns) {
+  if (path.empty()) return std::nullopt;
+  return bench::CsvTable::Read(path, columns);
+}
 
 std::string DrawInto(const std::string& folder, const std::string& name,
                      const bench::Figure& figure) {
@@ -27,11 +34,9 @@ void AddReproduceCommand(CommandLine& line) {
   reproduce->require_subcommand(0, 1);
   reproduce->callback([reproduce] {
     if (!reproduce->get_subcommands().empty()) return;
-    std::string names;
-    for (const CLI::App* const experiment : reproduce->get_subcommands({})) {
-      names += (names.empty() ? "" : ", ") + experiment->get_name();
-    }
-    throw InputError("reproduce", "needs one of " + names);
+    const auto name = [](const CLI::App* experiment) { return experiment->get_name(); };
+    throw InputError("reproduce",
+                     "needs one of " + Joined(reproduce->get_subcommands({}), ", ", name));
   });
   AddReproduceOpenLoop(line, *reproduce);
   AddReproduceSdfTiming(line, *reproduce);

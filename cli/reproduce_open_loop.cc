@@ -90,11 +90,8 @@ int Run(const std::string& name, const OpenLoopCommand& command) {
   const bench::OpenLoopStudyOptions options =
       MakeStudyOptions(command, static_cast<int>(experiment.pairs.size()));
   // Read before the long work, so that a wrong path is found at once.
-  std::optional<bench::CsvTable> published_table;
-  if (!command.published.empty()) {
-    published_table =
-        bench::CsvTable::Read(command.published, {bench::kPairColumn, bench::kSpeedColumn});
-  }
+  const std::optional<bench::CsvTable> published_table =
+      ReadPublished(command.published, {bench::kPairColumn, bench::kSpeedColumn});
   const std::string out = MakeOutFolder(command.out.empty() ? "out/" + name : command.out,
                                         {"rows.csv", "statistics.json", "figure.gp", "index.html"});
 

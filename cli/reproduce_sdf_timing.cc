@@ -25,9 +25,8 @@ constexpr int kMostVoxels = 512;
 
 int Run(const SdfTimingCommand& command) {
   CheckWords("--scenes", command.options.scenes, bench::FieldSceneNames());
-  std::optional<bench::CsvTable> published;
-  if (!command.published.empty())
-    published = bench::CsvTable::Read(command.published, {bench::kVoxelsColumn});
+  const std::optional<bench::CsvTable> published =
+      ReadPublished(command.published, {bench::kVoxelsColumn});
   const std::string out = MakeOutFolder(command.out, {"rows.csv", "figure.gp", "index.html"});
 
   const std::size_t num_sizes = command.options.voxels_per_side.size();

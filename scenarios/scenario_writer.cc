@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "sidestep/core/joined.h"
 #include "sidestep/scenarios/scenario.h"
 #include "sidestep/scenarios/yaml_text.h"
 
@@ -49,11 +50,8 @@ std::string KeysOf(const LinearMotion& motion) {
 }
 
 std::string KeysOf(const WaypointMotion& motion) {
-  std::string points;
-  for (const Eigen::Vector3d& point : motion.points_m) {
-    points += (points.empty() ? "" : ", ") + ("{position_m: " + List(point) + "}");
-  }
-  return "waypoints: {points: [" + points + "]";
+  const auto position = [](const Eigen::Vector3d& p) { return "{position_m: " + List(p) + "}"; };
+  return "waypoints: {points: [" + Joined(motion.points_m, ", ", position) + "]";
 }
 
 std::string KeysOf(const AcceleratedMotion& motion) {

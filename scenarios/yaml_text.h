@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <string>
 
+#include "sidestep/core/joined.h"
 #include "sidestep/core/number_text.h"
 
 namespace sidestep::scenarios {
@@ -11,9 +12,7 @@ inline std::string Number(double value) { return ShortestText(value); }
 
 /// [1, 2.5, 3]
 inline std::string List(const Eigen::VectorXd& values) {
-  std::string text;
-  for (const double value : values) text += (text.empty() ? "" : ", ") + Number(value);
-  return "[" + text + "]";
+  return "[" + Joined(values, ", ", &Number) + "]";
 }
 
 /// Any text as a double-quoted YAML scalar.

@@ -4,8 +4,10 @@
 
 #include <cmath>
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/number_text.h"
@@ -31,12 +33,16 @@ std::string ToText(const Eigen::MatrixBase<Vector>& values) {
   return text;
 }
 
-XMLElement* Append(XMLElement* parent, const char* tag) {
-  return parent->InsertNewChildElement(tag);
-}
-
 void Set(XMLElement* element, const char* key, const std::string& value) {
   element->SetAttribute(key, value.c_str());
+}
+
+using Attributes = std::initializer_list<std::pair<const char*, std::string>>;
+
+XMLElement* Append(XMLElement* parent, const char* tag, Attributes attributes = {}) {
+  XMLElement* const element = parent->InsertNewChildElement(tag);
+  for (const auto& [key, value] : attributes) Set(element, key, value);
+  return element;
 }
 
 void SetPose(XMLElement* element, const Pose& X) {
@@ -127,36 +133,23 @@ void MergeRobot(const scenarios::Scenario& scenario, const std::string& path, XM
 // The scene ------------------------------------------------------------------------------------
 
 void AddSettings(const scenarios::Scenario& scenario, XMLElement* world) {
-  XMLElement* option = Append(world, "option");
-  Set(option, "timestep", "0.001");
-  Set(option, "integrator", "Euler");
+  Append(world, "option", {{"timestep", "0.001"}, {"integrator", "Euler"}});
   // Room for a robot that lies deep in an obstacle; a simulation makes more where it needs it.
-  XMLElement* size = Append(world, "size");
-  Set(size, "nconmax", "200");
-  Set(size, "njmax", "800");
-  XMLElement* statistic = Append(world, "statistic");
-  Set(statistic, "center", ToText(scenario.X_WB.translation()));
-  Set(statistic, "extent", "3");
+  Append(world, "size", {{"nconmax", "200"}, {"njmax", "800"}});
+  Append(world, "statistic", {{"center", ToText(scenario.X_WB.translation())}, {"extent", "3"}});
   XMLElement* visual = Append(world, "visual");
-  XMLElement* global = Append(visual, "global");
-  Set(global, "offwidth", "1920");
-  Set(global, "offheight", "1080");
-  XMLElement* headlight = Append(visual, "headlight");
-  Set(headlight, "ambient", "0.35 0.35 0.35");
-  Set(headlight, "diffuse", "0.35 0.35 0.35");
-  Set(headlight, "specular", "0.05 0.05 0.05");
-  XMLElement* map = Append(visual, "map");
-  Set(map, "znear", "0.01");
-  Set(map, "zfar", "20");
-  Set(Append(visual, "quality"), "shadowsize", "2048");
+  Append(visual, "global", {{"offwidth", "1920"}, {"offheight", "1080"}});
+  Append(visual, "headlight",
+         {{"ambient", "0.35 0.35 0.35"},
+          {"diffuse", "0.35 0.35 0.35"},
+          {"specular", "0.05 0.05 0.05"}});
+  Append(visual, "map", {{"znear", "0.01"}, {"zfar", "20"}});
+  Append(visual, "quality", {{"shadowsize", "2048"}});
 }
 
 void AddMaterial(XMLElement* asset, const char* name, const char* rgba) {
-  XMLElement* material = Append(asset, "material");
-  Set(material, "name", name);
-  Set(material, "rgba", rgba);
-  Set(material, "specular", "0.15");
-  Set(material, "shininess", "0.3");
+  Append(asset, "material",
+         {{"name", name}, {"rgba", rgba}, {"specular", "0.15"}, {"shininess", "0.3"}});
 }
 
 constexpr const char* kFloorMaterial = "world/floor";
@@ -165,47 +158,47 @@ constexpr const char* kObstacleMaterial = "world/obstacle";
 
 void AddAssets(XMLElement* world) {
   XMLElement* asset = Append(world, "asset");
-  XMLElement* sky = Append(asset, "texture");
-  Set(sky, "name", "world/sky");
-  Set(sky, "type", "skybox");
-  Set(sky, "builtin", "gradient");
-  Set(sky, "rgb1", "0.93 0.95 0.97");
-  Set(sky, "rgb2", "0.62 0.70 0.78");
-  Set(sky, "width", "256");
-  Set(sky, "height", "256");
-  XMLElement* checker = Append(asset, "texture");
-  Set(checker, "name", kFloorMaterial);
-  Set(checker, "type", "2d");
-  Set(checker, "builtin", "checker");
-  Set(checker, "rgb1", "0.72 0.74 0.76");
-  Set(checker, "rgb2", "0.66 0.68 0.70");
-  Set(checker, "width", "256");
-  Set(checker, "height", "256");
-  XMLElement* floor = Append(asset, "material");
-  Set(floor, "name", kFloorMaterial);
-  Set(floor, "texture", kFloorMaterial);
-  Set(floor, "texuniform", "true");
-  Set(floor, "texrepeat", "1 1");  // squares of one metre
-  Set(floor, "specular", "0.1");
+  Append(asset, "texture",
+         {{"name", "world/sky"},
+          {"type", "skybox"},
+          {"builtin", "gradient"},
+          {"rgb1", "0.93 0.95 0.97"},
+          {"rgb2", "0.62 0.70 0.78"},
+          {"width", "256"},
+          {"height", "256"}});
+  Append(asset, "texture",
+         {{"name", kFloorMaterial},
+          {"type", "2d"},
+          {"builtin", "checker"},
+          {"rgb1", "0.72 0.74 0.76"},
+          {"rgb2", "0.66 0.68 0.70"},
+          {"width", "256"},
+          {"height", "256"}});
+  Append(asset, "material",
+         {{"name", kFloorMaterial},
+          {"texture", kFloorMaterial},
+          {"texuniform", "true"},
+          {"texrepeat", "1 1"},  // squares of one metre
+          {"specular", "0.1"}});
   AddMaterial(asset, kBoxMaterial, "0.60 0.49 0.38 1");
   AddMaterial(asset, kObstacleMaterial, "0.85 0.42 0.12 1");
 }
 
 void AddFloorAndLights(const scenarios::Scenario& scenario, XMLElement* worldbody) {
-  XMLElement* floor = Append(worldbody, "geom");
-  Set(floor, "name", kFloorGeom);
-  Set(floor, "type", "plane");
-  Set(floor, "size", "0 0 1");
-  Set(floor, "pos", ToText(Eigen::Vector3d(0, 0, scenario.floor_m)));
-  Set(floor, "material", kFloorMaterial);
-  XMLElement* light = Append(worldbody, "light");
-  Set(light, "directional", "true");
-  Set(light, "pos",
-      ToText(Eigen::Vector3d(scenario.X_WB.translation() + Eigen::Vector3d(-1, -1.5, 4))));
-  Set(light, "dir", "0.25 0.35 -1");
-  Set(light, "diffuse", "0.55 0.55 0.55");
-  Set(light, "specular", "0.2 0.2 0.2");
-  Set(light, "castshadow", "true");
+  Append(worldbody, "geom",
+         {{"name", kFloorGeom},
+          {"type", "plane"},
+          {"size", "0 0 1"},
+          {"pos", ToText(Eigen::Vector3d(0, 0, scenario.floor_m))},
+          {"material", kFloorMaterial}});
+  Append(
+      worldbody, "light",
+      {{"directional", "true"},
+       {"pos", ToText(Eigen::Vector3d(scenario.X_WB.translation() + Eigen::Vector3d(-1, -1.5, 4)))},
+       {"dir", "0.25 0.35 -1"},
+       {"diffuse", "0.55 0.55 0.55"},
+       {"specular", "0.2 0.2 0.2"},
+       {"castshadow", "true"}});
 }
 
 void AddCamera(const char* name, const Eigen::Vector3d& p_WEye, const Eigen::Vector3d& p_WTarget,
@@ -214,11 +207,8 @@ void AddCamera(const char* name, const Eigen::Vector3d& p_WEye, const Eigen::Vec
   const Eigen::Vector3d right = up.cross(back).normalized();
   Eigen::Matrix<double, 6, 1> axes;
   axes << right, back.cross(right);
-  XMLElement* camera = Append(worldbody, "camera");
-  Set(camera, "name", name);
-  Set(camera, "pos", ToText(p_WEye));
-  Set(camera, "xyaxes", ToText(axes));
-  Set(camera, "fovy", "45");
+  Append(worldbody, "camera",
+         {{"name", name}, {"pos", ToText(p_WEye)}, {"xyaxes", ToText(axes)}, {"fovy", "45"}});
 }
 
 // Both look at the space before the robot, `overview` over its shoulder: the robot does not hide
@@ -233,11 +223,9 @@ void AddCameras(const scenarios::Scenario& scenario, XMLElement* worldbody) {
 }
 
 void AddStaticBox(const scenarios::StaticBox& box, XMLElement* worldbody) {
-  XMLElement* body = Append(worldbody, "body");
-  Set(body, "name", box.name);
+  XMLElement* body = Append(worldbody, "body", {{"name", box.name}});
   SetPose(body, box.X_WO);
-  XMLElement* geom = Append(body, "geom");
-  Set(geom, "name", box.name);
+  XMLElement* geom = Append(body, "geom", {{"name", box.name}});
   SetShape(geom, Box{box.size_m});
   Set(geom, "material", kBoxMaterial);
 }
@@ -257,9 +245,8 @@ void AddPicture(const scenarios::MovingObstacle& obstacle, const std::string& pa
   XMLElement* frame = Append(body, "body");
   SetPose(frame, AppearancePose(obstacle));
   for (const PictureGeom& picture : PictureOf(path)) {
-    XMLElement* geom = Append(frame, "geom");
-    Set(geom, "type", picture.type);
-    Set(geom, "size", ToText(picture.size));
+    XMLElement* geom =
+        Append(frame, "geom", {{"type", picture.type}, {"size", ToText(picture.size)}});
     SetPose(geom, picture.X_AG);
     Set(geom, "rgba", ToText(picture.rgba));
     Set(geom, "contype", "0");
@@ -271,12 +258,9 @@ void AddPicture(const scenarios::MovingObstacle& obstacle, const std::string& pa
 void AddMovingObstacle(const scenarios::Scenario& scenario, std::size_t index,
                        const std::string& models_dir, XMLElement* worldbody) {
   const scenarios::MovingObstacle& obstacle = scenario.moving_obstacles[index];
-  XMLElement* body = Append(worldbody, "body");
-  Set(body, "name", obstacle.name);
-  Set(body, "mocap", "true");
+  XMLElement* body = Append(worldbody, "body", {{"name", obstacle.name}, {"mocap", "true"}});
   SetPose(body, PoseAt(obstacle, EpisodeTime(0)));
-  XMLElement* geom = Append(body, "geom");
-  Set(geom, "name", obstacle.name);
+  XMLElement* geom = Append(body, "geom", {{"name", obstacle.name}});
   SetShape(geom, obstacle.shape);
   if (obstacle.appearance.empty()) {
     Set(geom, "material", kObstacleMaterial);
@@ -349,9 +333,7 @@ std::string BuildWorldXml(const scenarios::Scenario& scenario,
     XMLElement* contact = world->FirstChildElement("contact");
     if (contact == nullptr) contact = Append(world, "contact");
     for (const std::string& link : mount_links) {
-      XMLElement* exclude = Append(contact, "exclude");
-      Set(exclude, "body1", link);
-      Set(exclude, "body2", stands_on);
+      Append(contact, "exclude", {{"body1", link}, {"body2", stands_on}});
     }
   }
   tinyxml2::XMLPrinter printer;

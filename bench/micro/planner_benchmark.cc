@@ -67,17 +67,21 @@ struct Scene {
   std::unique_ptr<const sdf::CompositeField> field;
 };
 
-void BM_ColdPlan(benchmark::State& state) {
-  const Scene scene(0.1 * static_cast<double>(state.range(0)));
-  const auto planner = planner::MakePlanner("gpmp", scene.robot, {});
-  const planner::PlanRequest request = scene.Request();
+void PlanAgain(const planner::Planner& planner, const planner::PlanRequest& request,
+               benchmark::State& state) {
   int iterations = 0;
   for (auto _ : state) {
-    const planner::PlanResult result = planner->Plan(request);
+    const planner::PlanResult result = planner.Plan(request);
     iterations = result.iterations;
     benchmark::DoNotOptimize(result.clearance.least_m);
   }
   state.counters["iterations"] = iterations;
+}
+
+void BM_ColdPlan(benchmark::State& state) {
+  const Scene scene(0.1 * static_cast<double>(state.range(0)));
+  const auto planner = planner::MakePlanner("gpmp", scene.robot, {});
+  PlanAgain(*planner, scene.Request(), state);
 }
 BENCHMARK(BM_ColdPlan)
     ->ArgName("speed_dm_s")
@@ -95,13 +99,7 @@ void BM_WarmPlan(benchmark::State& state) {
   request.num_fixed = 3;
   const Scene moved(1.4, 0.01 * static_cast<double>(state.range(0)));
   request.field = moved.field.get();
-  int iterations = 0;
-  for (auto _ : state) {
-    const planner::PlanResult result = planner->Plan(request);
-    iterations = result.iterations;
-    benchmark::DoNotOptimize(result.clearance.least_m);
-  }
-  state.counters["iterations"] = iterations;
+  PlanAgain(*planner, request, state);
 }
 BENCHMARK(BM_WarmPlan)->ArgName("error_cm")->Arg(0)->Arg(2)->Arg(10)->Unit(benchmark::kMillisecond);
 
