@@ -36,19 +36,12 @@ MotionMatrix Noise(double dt_s) {
   return Q;
 }
 
-class KalmanCaPredictor final : public ObstaclePredictor {
- public:
-  PredictedMotion Predict(const TrackedObject& object) const override {
-    return PredictByFilter(kConstantAcceleration, object);
-  }
-};
-
 }  // namespace
 
 const MotionModel kConstantAcceleration = {&Move, &Noise};
 
 std::unique_ptr<ObstaclePredictor> MakeKalmanCaPredictor() {
-  return std::make_unique<KalmanCaPredictor>();
+  return MakeFilterPredictor(kConstantAcceleration);
 }
 
 }  // namespace sidestep::sdf

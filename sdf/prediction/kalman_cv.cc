@@ -30,19 +30,12 @@ MotionMatrix Noise(double dt_s) {
   return Q;
 }
 
-class KalmanCvPredictor final : public ObstaclePredictor {
- public:
-  PredictedMotion Predict(const TrackedObject& object) const override {
-    return PredictByFilter(kConstantVelocity, object);
-  }
-};
-
 }  // namespace
 
 const MotionModel kConstantVelocity = {&Move, &Noise};
 
 std::unique_ptr<ObstaclePredictor> MakeKalmanCvPredictor() {
-  return std::make_unique<KalmanCvPredictor>();
+  return MakeFilterPredictor(kConstantVelocity);
 }
 
 }  // namespace sidestep::sdf

@@ -57,19 +57,12 @@ MotionMatrix Noise(double dt_s) {
   return Q;
 }
 
-class KalmanTurnPredictor final : public ObstaclePredictor {
- public:
-  PredictedMotion Predict(const TrackedObject& object) const override {
-    return PredictByFilter(kCoordinatedTurn, object);
-  }
-};
-
 }  // namespace
 
 const MotionModel kCoordinatedTurn = {&Move, &Noise};
 
 std::unique_ptr<ObstaclePredictor> MakeKalmanTurnPredictor() {
-  return std::make_unique<KalmanTurnPredictor>();
+  return MakeFilterPredictor(kCoordinatedTurn);
 }
 
 }  // namespace sidestep::sdf

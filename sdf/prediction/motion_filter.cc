@@ -12,6 +12,28 @@ constexpr double kLongestStep_s = 0.1;
 
 Eigen::Matrix3d Square(double sigma) { return sigma * sigma * Eigen::Matrix3d::Identity(); }
 
+class FilterPredictor final : public ObstaclePredictor {
+ public:
+  explicit FilterPredictor(const MotionModel& model) : model_(model) {}
+
+  PredictedMotion Predict(const TrackedObject& object) const override {
+    MotionFilter filter(model_, object.history.front());
+    for (std::size_t n = 1; n < object.history.size(); ++n) filter.Update(object.history[n]);
+    const EpisodeTime seen = filter.t();
+    const MotionEstimate estimate = filter.AnchoredEstimate();
+    return {[model = model_, estimate, seen](EpisodeTime t) {
+              const MotionVector x = model.move(estimate.x, (t - seen).seconds(), nullptr);
+              return Pose::Translation(x.segment<3>(kP));
+            },
+            [model = model_, estimate, seen](EpisodeTime t) -> Eigen::Matrix3d {
+              return Propagate(model, estimate, (t - seen).seconds()).P.block<3, 3>(kP, kP);
+            }};
+  }
+
+ private:
+  MotionModel model_;
+};
+
 }  // namespace
 
 void AddPriorNoise(int part, MotionMatrix& Q) {
@@ -69,18 +91,8 @@ MotionEstimate MotionFilter::AnchoredEstimate() const {
   return anchored;
 }
 
-PredictedMotion PredictByFilter(const MotionModel& model, const TrackedObject& object) {
-  MotionFilter filter(model, object.history.front());
-  for (std::size_t n = 1; n < object.history.size(); ++n) filter.Update(object.history[n]);
-  const EpisodeTime seen = filter.t();
-  const MotionEstimate estimate = filter.AnchoredEstimate();
-  return {[model, estimate, seen](EpisodeTime t) {
-            const MotionVector x = model.move(estimate.x, (t - seen).seconds(), nullptr);
-            return Pose::Translation(x.segment<3>(kP));
-          },
-          [model, estimate, seen](EpisodeTime t) -> Eigen::Matrix3d {
-            return Propagate(model, estimate, (t - seen).seconds()).P.block<3, 3>(kP, kP);
-          }};
+std::unique_ptr<ObstaclePredictor> MakeFilterPredictor(const MotionModel& model) {
+  return std::make_unique<FilterPredictor>(model);
 }
 
 }  // namespace sidestep::sdf

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 
 #include "sidestep/core/time.h"
 #include "sidestep/sdf/prediction/predictor.h"
@@ -77,7 +78,7 @@ class MotionFilter {
   double sigma_m_;
 };
 
-/// Runs a filter of one model over the object's history and goes on with it.
-PredictedMotion PredictByFilter(const MotionModel& model, const TrackedObject& object);
+/// Runs a filter of one model over an object's history and goes on with it. `model` is copied.
+std::unique_ptr<ObstaclePredictor> MakeFilterPredictor(const MotionModel& model);
 
 }  // namespace sidestep::sdf
