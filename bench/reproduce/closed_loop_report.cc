@@ -254,18 +254,15 @@ std::string MakeClosedLoopPage(const ClosedLoopOptions& options, const ClosedLoo
   page.Heading("Rates");
   page.Paragraph(
       "Update rate: one over the CPU time of a planning cycle, from the observation to the plan, "
-      "of "
-      "the shortest, the median and the longest cycle of a run. Prediction rate: one over the "
-      "median "
-      "time of making the field of one later step. In brackets and as rings the stored figures of "
-      "the authors, of another machine.");
+      "of the shortest, the median and the longest cycle of a run. Prediction rate: one over the "
+      "median time of making the field of one later step. In brackets and as rings the stored "
+      "figures of the authors, of another machine.");
   if (!rates_svg.empty()) page.Picture(rates_svg, "Rates over the size of the grid.");
   page.Table(RateRows(MakeRatesTable(study, published)));
   page.Heading("The predictions of a whole run");
   page.Paragraph(
       "Each step from the second on predicts the fields of all the steps that remain: 435 in a "
-      "run, "
-      "in each of the five field scenes, at 96 voxels a side. Times in ms.");
+      "run, in each of the five field scenes, at 96 voxels a side. Times in ms.");
   page.Table(WholeRunRows(study.whole_run));
   return page.ToText();
 }

@@ -1,10 +1,13 @@
 #include "sidestep/bench/reproduce/open_loop_report.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <map>
 #include <utility>
 
 #include "sidestep/bench/report/html_page.h"
+#include "sidestep/core/joined.h"
 #include "sidestep/core/number_text.h"
 
 namespace sidestep::bench {
@@ -52,13 +55,11 @@ void AddCurves(Figure& figure, const std::vector<MatchedOutcomes>& rows, bool is
 
 std::string DescribeSetup(const OpenLoopExperiment& experiment,
                           const OpenLoopStudyOptions& options) {
-  std::string text = "sigma_obs " + FiniteText("{:g}", experiment.sigma_obs) + ", epsilon " +
-                     FiniteText("{:g} m", experiment.epsilon_m) + ", " +
-                     std::to_string(experiment.num_interpolated) +
-                     " interpolated obstacle costs an interval, " +
-                     std::to_string(experiment.speeds_m_s.size()) + " speeds from " +
-                     FiniteText("{:g}", experiment.speeds_m_s.front()) + " to " +
-                     FiniteText("{:g} m/s", experiment.speeds_m_s.back()) + ". ";
+  std::string text = fmt::format(
+      "sigma_obs {:g}, epsilon {:g} m, {} interpolated obstacle costs an interval, {} speeds from "
+      "{:g} to {:g} m/s. ",
+      experiment.sigma_obs, experiment.epsilon_m, experiment.num_interpolated,
+      experiment.speeds_m_s.size(), experiment.speeds_m_s.front(), experiment.speeds_m_s.back());
   text += options.once ? "Static and full knowledge are solved once. "
                        : "Each motion is solved as often as it has states, pinning one more state "
                          "each time. ";
@@ -80,30 +81,25 @@ std::string InShort(const OpenLoopStudy& study,
                     const std::optional<PublishedComparison>& published) {
   std::string text = "In short: ";
   if (published) {
-    text += "the counts of colliding states agree with the published ones in " +
-            std::to_string(published->table.CountsAgreeing()) + " of " +
-            std::to_string(published->table.CountsCompared()) + " entries. ";
+    text += fmt::format(
+        "the counts of colliding states agree with the published ones in {} of {} entries. ",
+        published->table.CountsAgreeing(), published->table.CountsCompared());
   }
-  text += "Of " + std::to_string(study.rows.size()) +
-          " rows, so many are collision-free by the published verdict, and so many by the exact "
-          "boxes all along the motion: ";
-  std::string separator;
-  for (const VerdictCounts& counts : CountVerdicts(study)) {
-    text += separator + Words(counts.knowledge) + " " + std::to_string(counts.free) + " and " +
-            std::to_string(counts.truly_free);
-    separator = ", ";
-  }
-  return text + ".";
+  const auto verdicts = [](const VerdictCounts& counts) {
+    return fmt::format("{} {} and {}", Words(counts.knowledge), counts.free, counts.truly_free);
+  };
+  return text + fmt::format(
+                    "Of {} rows, so many are collision-free by the published verdict, and so many "
+                    "by the exact boxes all along the motion: {}.",
+                    study.rows.size(), Joined(CountVerdicts(study), ", ", verdicts));
 }
 
 void AddPublished(HtmlPage& page, const TableComparison& comparison) {
   page.Heading("Against the published table");
-  page.Paragraph("Counts of colliding states agree in " +
-                 std::to_string(comparison.CountsAgreeing()) + " of " +
-                 std::to_string(comparison.CountsCompared()) + " entries of " +
-                 std::to_string(comparison.rows_compared) +
-                 " rows. Costs agree if they differ by "
-                 "no more than a millionth.");
+  page.Paragraph(fmt::format(
+      "Counts of colliding states agree in {} of {} entries of {} rows. Costs agree if they differ "
+      "by no more than a millionth.",
+      comparison.CountsAgreeing(), comparison.CountsCompared(), comparison.rows_compared));
   page.Table(MakeTextTable(comparison));
   if (comparison.differences.empty()) return;
   page.Paragraph("Entries that differ:");
@@ -120,8 +116,8 @@ void AddVerdicts(HtmlPage& page, const OpenLoopStudy& study) {
   page.Paragraph(
       "The published verdict looks at the support states alone, in the voxel field that planned, "
       "and takes everything outside the grid as free. Here the same motions are judged by the "
-      "exact "
-      "boxes where they were meant to stand, at the states and then every 5 ms between them.");
+      "exact boxes where they were meant to stand, at the states and then every 5 ms between "
+      "them.");
   page.Table(MakeVerdictTable(study));
 }
 
@@ -160,17 +156,15 @@ void AddStatistics(HtmlPage& page, const std::vector<OpenLoopStatistics>& statis
       "Brackets hold 95 %: Wilson's for rates; for differences a bootstrap over pairs of start and "
       "goal, whose rows at different speeds resemble each other. \"Speeds\" counts at how many of "
       "them a two-sided test gives p < 0.05 after Holm's adjustment over the speeds: McNemar's "
-      "exact "
-      "test of the outcomes, Wilcoxon's signed ranks of the costs, of all rows and of those in "
-      "which "
-      "both are free. Every figure, with the Hodges-Lehmann shift at each speed, is in "
+      "exact test of the outcomes, Wilcoxon's signed ranks of the costs, of all rows and of those "
+      "in which both are free. Every figure, with the Hodges-Lehmann shift at each speed, is in "
       "statistics.json.");
   for (const OpenLoopStatistics& filtered : statistics) {
-    page.Paragraph("Filter " + ToString(filtered.filter) + ": " +
-                   std::to_string(filtered.num_rows) + " rows; excluded " +
-                   std::to_string(filtered.excluded_by_speed) + " by their speed and " +
-                   std::to_string(filtered.excluded_none_free) +
-                   " in which no published kind of knowledge is free.");
+    page.Paragraph(fmt::format(
+        "Filter {}: {} rows; excluded {} by their speed and {} in which no published kind of "
+        "knowledge is free.",
+        ToString(filtered.filter), filtered.num_rows, filtered.excluded_by_speed,
+        filtered.excluded_none_free));
     if (filtered.num_rows == 0) continue;
     if (std::none_of(filtered.comparisons.begin(), filtered.comparisons.end(),
                      [](const KnowledgeComparison& c) { return c.CanBeSignificant(); })) {

@@ -200,15 +200,13 @@ std::string MakeSdfTimingPage(const SdfTimingOptions& options, const CsvTable& o
   page.Paragraph(
       "After table 1 of M. Finean, W. Merkt, I. Havoutis, \"Predicted Composite Signed-Distance "
       "Fields for Real-Time Motion Planning in Dynamic Environments\", ICAPS 2021. Objects are "
-      "seen "
-      "twice and predicted at 31 moments. The field of each moment is computed anew from the "
+      "seen twice and predicted at 31 moments. The field of each moment is computed anew from the "
       "predicted map (full computation), or composed of the fields of the static part and the "
       "objects: as a grid (dense, as in the paper), as a grid from that of the moment before "
       "(incremental), or when it is asked (lazy).");
-  page.Paragraph("Scenes: " + Joined(options.scenes) +
-                 ". Times are CPU times of one core, medians over scenes, "
-                 "moments and " +
-                 std::to_string(options.repeats) + " repeats.");
+  page.Paragraph(fmt::format(
+      "Scenes: {}. Times are CPU times of one core, medians over scenes, moments and {} repeats.",
+      Joined(options.scenes), options.repeats));
   if (published) {
     page.Paragraph(
         "In brackets the published means in ms, of MATLAB's bwdist on another machine: "
@@ -234,11 +232,9 @@ std::string MakeSdfTimingPage(const SdfTimingOptions& options, const CsvTable& o
   page.Heading("Is the composite the same field?");
   page.Paragraph(
       "At cell centres, where objects are moved by whole cells, the composite equals the exact "
-      "field "
-      "in all free cells within the margin. Inside obstacles that touch or overlap it may "
+      "field in all free cells within the margin. Inside obstacles that touch or overlap it may "
       "underestimate the depth. Compared where every object lies wholly in the grid: beyond it, "
-      "the "
-      "composite knows more than the grid.");
+      "the composite knows more than the grid.");
   page.Table(errors);
   return page.ToText();
 }
