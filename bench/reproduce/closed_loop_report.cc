@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <limits>
 #include <utility>
 
 #include "sidestep/bench/report/html_page.h"
@@ -40,18 +38,6 @@ struct Summary {
 constexpr Summary kPublishedWholeRun[] = {{"full computation", 26.2, 29.7, 29.9, 41.2},
                                           {"initialisation", 26.8, 30.9, 30.8, 42.8},
                                           {"composite (dense)", 1.354, 1.539, 1.697, 6.759}};
-
-std::vector<double> Collect(const std::vector<PredictionTimes>& predictions,
-                            double PredictionTimes::*value) {
-  std::vector<double> values;
-  for (const PredictionTimes& times : predictions) values.push_back(times.*value);
-  return values;
-}
-
-std::optional<double> Lookup(const std::optional<CsvTable>& table, int voxels,
-                             const std::string& column) {
-  return table ? table->Lookup(kVoxelsColumn, voxels, column) : std::nullopt;
-}
 
 Summary Summarise(const char* words, const std::vector<double>& values_s) {
   double mean = 0;
@@ -173,10 +159,10 @@ CsvTable MakeRatesTable(const ClosedLoopStudy& study, const PublishedRates& publ
         hz(Collect(rate.predictions, &PredictionTimes::dense_s), 0.5),
         hz(Collect(rate.predictions, &PredictionTimes::lazy_s), 0.5)};
     for (const char* const column : {"fastest_rate_hz", "median_rate_hz", "slowest_rate_hz"}) {
-      row.push_back(Lookup(published.loops, rate.voxels_per_side, column));
+      row.push_back(PublishedAt(published.loops, rate.voxels_per_side, column));
     }
     const auto prediction_s =
-        Lookup(published.predictions, rate.voxels_per_side, "composite_prediction_s");
+        PublishedAt(published.predictions, rate.voxels_per_side, "composite_prediction_s");
     row.push_back(prediction_s ? std::optional(1 / *prediction_s) : std::nullopt);
     table.AddRow(std::move(row));
   }

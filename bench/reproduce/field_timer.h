@@ -25,6 +25,14 @@ struct PredictionTimes {
   double query_s = 0;        ///< asking that for one point, mean of many
 };
 
+/// One of them of each prediction.
+inline std::vector<double> Collect(const std::vector<PredictionTimes>& predictions,
+                                   double PredictionTimes::*value) {
+  std::vector<double> values;
+  for (const PredictionTimes& times : predictions) values.push_back(times.*value);
+  return values;
+}
+
 /// How far the dense composite is from the exact field of the same moment, at cell centres [m].
 struct CompositeError {
   double free_m = 0;    ///< at most, in free cells within the margin of an obstacle

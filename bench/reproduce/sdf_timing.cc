@@ -50,12 +50,6 @@ double Get(const CsvTable& table, std::size_t row, const std::string& column) {
   return table.At(row, table.Find(column).value()).value();
 }
 
-// The published figure for a grid of the same size.
-std::optional<double> Published(const std::optional<CsvTable>& published, double voxels,
-                                const std::string& column) {
-  return published ? published->Lookup(kVoxelsColumn, voxels, column) : std::nullopt;
-}
-
 std::string FormatTime(double ms) {
   if (ms >= 1) return FiniteText("{:.3g} ms", ms);
   if (ms >= 1e-3) return FiniteText("{:.3g} us", 1e3 * ms);
@@ -71,7 +65,7 @@ std::vector<Entry> Entries(const CsvTable& ours, std::size_t row,
   const double voxels = Get(ours, row, kVoxelsColumn);
   const auto text = [&](const char* measure, const std::string& their_column) {
     std::string cell = FormatTime(Get(ours, row, Name(measure, "median")));
-    if (const auto theirs = Published(published, voxels, their_column)) {
+    if (const auto theirs = PublishedAt(published, voxels, their_column)) {
       cell += " (" + FiniteText("{:.3g}", *theirs) + ")";
     }
     return cell;
@@ -85,8 +79,8 @@ std::vector<Entry> Entries(const CsvTable& ours, std::size_t row,
                                     Get(ours, row, Name(measure, "median")));
   };
   entries.push_back({"full / dense", ratio("dense_composite_ms")});
-  const auto full = Published(published, voxels, "full_computation_mean_ms");
-  const auto dense = Published(published, voxels, "composite_prediction_mean_ms");
+  const auto full = PublishedAt(published, voxels, "full_computation_mean_ms");
+  const auto dense = PublishedAt(published, voxels, "composite_prediction_mean_ms");
   if (full && dense) entries.back().text += " (" + FiniteText("{:.3g}", *full / *dense) + ")";
   return entries;
 }
@@ -142,11 +136,7 @@ CsvTable MakeSdfTimingTable(const std::vector<SdfTimingSize>& sizes) {
                                               static_cast<double>(size.init_s.size())};
     AppendQuantiles(row, size.init_s);
     for (const Measure& measure : kMeasures) {
-      std::vector<double> values_s;
-      for (const PredictionTimes& times : size.predictions) {
-        values_s.push_back(times.*measure.value);
-      }
-      AppendQuantiles(row, values_s);
+      AppendQuantiles(row, Collect(size.predictions, measure.value));
     }
     row.insert(row.end(),
                {size.num_compared, size.largest_error.free_m, size.largest_error.inside_m});
@@ -166,7 +156,7 @@ Figure MakeSdfTimingFigure(const CsvTable& ours, const std::optional<CsvTable>& 
       curve.y.push_back(Get(ours, row, Name(measure, "median")));
       curve.low.push_back(Get(ours, row, Name(measure, "q10")));
       curve.high.push_back(Get(ours, row, Name(measure, "q90")));
-      const auto value = Published(published, voxels, their_column);
+      const auto value = PublishedAt(published, voxels, their_column);
       if (!value) continue;
       curve.published_voxels.push_back(voxels);
       curve.published_y.push_back(*value);
