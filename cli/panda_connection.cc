@@ -1,6 +1,7 @@
 #include "sidestep/cli/panda_connection.h"
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/hardware/libfranka_driver.h"
 #include "sidestep/hardware/raw_fci_driver.h"
 
 namespace sidestep::cli {
@@ -10,13 +11,14 @@ bool IsLoopback(const std::string& address) {
 }
 
 std::unique_ptr<hardware::FciDriver> ConnectPanda(const std::string& address) {
-  if (!IsLoopback(address)) {
+  if (!IsLoopback(address) && !hardware::HasLibfranka()) {
     throw InputError("--robot", "'" + address +
                                     "' is not on this machine, and a real robot needs libfranka, "
                                     "which this program was built without: docs/hardware.md");
   }
   const std::string numeric = address == "localhost" ? "127.0.0.1" : address;
   try {
+    if (!IsLoopback(address)) return hardware::MakeLibfrankaDriver(address, {});
     return std::make_unique<hardware::RawFciDriver>(numeric);
   } catch (const hardware::FciError& error) {
     throw InputError("--robot", error.what());

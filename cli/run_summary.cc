@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "sidestep/bench/outcome.h"
+#include "sidestep/bench/result_file.h"
 #include "sidestep/bench/statistics.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/core/number_text.h"
