@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <ostream>
 #include <stdexcept>
 #include <string>
@@ -233,7 +234,7 @@ INSTANTIATE_TEST_SUITE_P(
         // As a real one does above some 1 m/s^2 of the tool.
         AbortCase{"AForceThatOnlySeemsToBe",
                   "force_estimate: {per_speed_n_s_m: 0, per_acceleration_kg: 20}",
-                  CommandKind::kVelocities, Ramp(0.0035, 300), "cartesian_reflex"}),
+                  CommandKind::kVelocities, Ramp(0.005, 300), "cartesian_reflex", 0}),
     [](const auto& test) { return test.param.name; });
 
 // What a robot takes without a word.
@@ -458,25 +459,67 @@ TEST(FciServer, EndsAMotionOfWhatIsNoNumber) {
             static_cast<std::uint8_t>(robot::fci::MoveStatus::kInputErrorAborted));
 }
 
-// libfranka sees the mode change, then waits for the reply: so the state goes first.
+// Libfranka sees the mode change, then waits for the reply: so the state goes first, and has come
+// when the reply comes. Without FciClient, which would wait for it.
 TEST(FciServer, ShowsTheEndOfAMotionBeforeItTellsIt) {
+  using namespace robot::fci;
   const ServedPanda panda;
-  FciClient client(panda.address());
-  for (int k = 0; k < 20; ++k) {
-    robot::fci::MoveRequest request{};
-    const auto id = client.Send(robot::fci::Request::kMove, robot::fci::ToBytes(request));
-    client.AwaitReply(id);
-    robot::fci::RobotState state = client.AwaitState();
-    while (state.robot_mode != RobotMode::kMove) state = client.AwaitState();
-    state = client.AwaitState();
-    robot::fci::RobotCommand command{};
-    command.message_id = state.message_id;
-    command.q_c = state.q_d;
-    command.motion_generation_finished = 1;
-    client.Answer(command);
-    EXPECT_EQ(client.AwaitReply(id).front(), robot::fci::status::kSuccess);
-    EXPECT_EQ(client.AwaitState().robot_mode, RobotMode::kIdle);
+  auto link = CommandLink::Connect(panda.address(), kCommandPort, std::chrono::seconds(1));
+  DatagramPort states("0.0.0.0");
+  RobotState state{};
+  const auto look = [&] {
+    bool is_new = false;
+    while (const auto bytes = states.Receive(kRobotStateSize)) {
+      state = DecodeRobotState(*bytes);
+      is_new = true;
+    }
+    return is_new;
+  };
+  // Finishes what motion there is, until something is replied.
+  const auto reply = [&] {
+    std::optional<Message> message;
+    while (!(message = link.Receive())) {
+      if (!look() || state.robot_mode != RobotMode::kMove) continue;
+      RobotCommand command{};
+      command.message_id = state.message_id;
+      command.q_c = state.q_d;
+      command.motion_generation_finished = 1;
+      states.Send(Encode(command));
+    }
+    return message->payload.front();
+  };
+  link.Send({Request::kConnect, 0, ToBytes(ConnectRequest{kVersion, states.port()})});
+  ASSERT_EQ(reply(), status::kSuccess);
+  for (std::uint32_t id = 1; id <= 100; ++id) {
+    link.Send({Request::kMove, id, ToBytes(MoveRequest{})});
+    ASSERT_EQ(reply(), static_cast<std::uint8_t>(MoveStatus::kMotionStarted));
+    ASSERT_EQ(reply(), status::kSuccess);
+    look();
+    ASSERT_EQ(state.robot_mode, RobotMode::kIdle) << id;
   }
+}
+
+TEST(FciServer, TakesNoAnswerToAnOlderState) {
+  sim::fci::ServerOptions options;
+  options.grace_s = 0.02;
+  const ServedPanda panda("", options);
+  FciClient client(panda.address());
+  const auto id =
+      client.Send(robot::fci::Request::kMove, robot::fci::ToBytes(robot::fci::MoveRequest{}));
+  client.AwaitReply(id);
+  robot::fci::RobotState state = client.AwaitState();
+  int answered = 0;
+  while (state.robot_mode != RobotMode::kReflex) {
+    robot::fci::RobotCommand command{};
+    command.message_id = state.message_id - (answered > 10 ? 1 : 0);
+    command.q_c = state.q_d;
+    client.Answer(command);
+    if (state.robot_mode == RobotMode::kMove) ++answered;
+    state = client.AwaitState();
+  }
+  EXPECT_EQ(
+      state.reflex_reason[static_cast<std::size_t>(Error::kCommunicationConstraintsViolation)], 1);
+  EXPECT_LT(answered, 50);
 }
 
 struct SettingCase {
