@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "sidestep/core/number_text.h"
-
 namespace sidestep::sim::fci {
 namespace {
 
@@ -26,19 +24,11 @@ constexpr int kRecoveryTicks = 50;     // the real one takes up to seconds
 constexpr double kAccelerating = 0.1;  // rad/s^2, of the reference: which thresholds hold
 constexpr double kElbowFlip_rad = -0.467002423653011;  // of joint 4 (hardware fact: franka_ros)
 constexpr double kMeasuredSpeed = 1.1;  // times its limit: a joint that only lags trips nothing
-constexpr double kBlockStiffness = 1e4, kBlockDamping = 60;
-constexpr double kFrictionSpeed_rad_s = 0.01;  // below, friction fades to zero
 
 template <typename Values>
 bool AllFinite(const Values& values) {
   return std::all_of(values.begin(), values.end(),
                      [](double value) { return std::isfinite(value); });
-}
-
-template <typename Values>
-bool AllWithin(const Values& values, double least, double most) {
-  return std::all_of(values.begin(), values.end(),
-                     [&](double value) { return value >= least && value <= most; });
 }
 
 std::array<double, 2> Elbow(const Joints& q) { return {q[2], q[3] < kElbowFlip_rad ? -1.0 : 1.0}; }
@@ -49,32 +39,11 @@ std::array<std::uint8_t, robot::fci::kNumErrors> Flags(const ErrorSet& errors) {
   return flags;
 }
 
-bool IsValid(const robot::fci::CollisionBehaviorRequest& request) {
-  constexpr double kMost = 1e6;
-  const auto is_valid = [&](const auto& values) { return AllWithin(values, 0, kMost); };
-  return is_valid(request.lower_torque_acceleration) &&
-         is_valid(request.upper_torque_acceleration) && is_valid(request.lower_torque_nominal) &&
-         is_valid(request.upper_torque_nominal) && is_valid(request.lower_force_acceleration) &&
-         is_valid(request.upper_force_acceleration) && is_valid(request.lower_force_nominal) &&
-         is_valid(request.upper_force_nominal);
-}
-
-std::vector<Fault> ByTime(std::vector<Fault> faults) {
-  std::stable_sort(faults.begin(), faults.end(),
-                   [](const Fault& a, const Fault& b) { return a.at_s < b.at_s; });
-  return faults;
-}
-
 }  // namespace
 
 SimulatedPanda::SimulatedPanda(PandaPlant* plant, FaultScript faults)
-    : plant_(*plant),
-      script_(std::move(faults)),
-      random_(script_.seed, "fci packet loss"),
-      impedance_(plant->impedance()),
-      NE_T_EE_(Identity4()),
-      EE_T_K_(Identity4()) {
-  script_.faults = ByTime(script_.faults);
+    : plant_(*plant), script_(std::move(faults)), faults_(script_) {
+  settings_.impedance = plant_.impedance();
   reference_.q = plant_.q();
 }
 
@@ -109,50 +78,12 @@ std::optional<Message> SimulatedPanda::Handle(const Message& request) {
       reply.payload = {robot::fci::status::kNoModelLibrary};
       break;
     default:
-      reply.payload = {Set(request)};
+      reply.payload = {modes_.MaySet()};
+      if (modes_.MaySet() == robot::fci::status::kSuccess) {
+        reply.payload = {Apply(request, settings_)};
+      }
   }
   return reply;
-}
-
-std::uint8_t SimulatedPanda::Set(const Message& request) {
-  namespace status = robot::fci::status;
-  using robot::fci::FromBytes;
-  if (modes_.MaySet() != status::kSuccess) return status::kNotPossible;
-  switch (request.request) {
-    case Request::kSetCollisionBehavior: {
-      const auto wanted = FromBytes<robot::fci::CollisionBehaviorRequest>(request.payload);
-      if (!IsValid(wanted)) return status::kInvalidArgument;
-      collision_ = wanted;
-      return status::kSuccess;
-    }
-    case Request::kSetJointImpedance: {
-      const auto wanted = FromBytes<robot::fci::JointImpedanceRequest>(request.payload);
-      if (!AllWithin(wanted.stiffness, 0, kLargestStiffness)) return status::kInvalidArgument;
-      impedance_.stiffness = wanted.stiffness;
-      return status::kSuccess;
-    }
-    case Request::kSetEEToK:
-    case Request::kSetNEToEE: {
-      const auto wanted = FromBytes<robot::fci::FrameRequest>(request.payload);
-      if (!IsTransform(wanted.pose)) return status::kInvalidArgument;
-      (request.request == Request::kSetEEToK ? EE_T_K_ : NE_T_EE_) = wanted.pose;
-      return status::kSuccess;
-    }
-    case Request::kSetLoad: {
-      const auto wanted = FromBytes<robot::fci::LoadRequest>(request.payload);
-      if (!(wanted.mass_kg >= 0) || !AllFinite(wanted.F_x_Cload) || !AllFinite(wanted.I_load)) {
-        return status::kInvalidArgument;
-      }
-      load_ = wanted;
-      return status::kSuccess;
-    }
-    case Request::kSetCartesianImpedance:
-    case Request::kSetGuidingMode:
-    case Request::kSetFilters:
-      return status::kSuccess;  // of what is not simulated
-    default:
-      return status::kNotPossible;
-  }
 }
 
 void SimulatedPanda::BeginMove(const Message& request, Message& reply) {
@@ -171,7 +102,7 @@ void SimulatedPanda::BeginMove(const Message& request, Message& reply) {
   has_begun_ = false;
   settle_ticks_ = 0;
   loss_ = PacketLoss();
-  lost_commands_ = lost_states_ = 0;
+  faults_.BeginMotion();
   tau_d_ = {};
   const bool by_position = modes_.motion_generator() == MotionGenerator::kJointPosition;
   Tell(std::string("motion started: joint ") + (by_position ? "positions" : "velocities") +
@@ -214,15 +145,15 @@ RobotState SimulatedPanda::State() const {
   state.dq_d = reference_.dq;
   state.ddq_d = reference_.ddq;
   state.F_T_NE = HandFrame();
-  state.NE_T_EE = NE_T_EE_;
-  state.F_T_EE = Product(state.F_T_NE, NE_T_EE_);
-  state.EE_T_K = EE_T_K_;
+  state.NE_T_EE = settings_.NE_T_EE;
+  state.F_T_EE = Product(state.F_T_NE, settings_.NE_T_EE);
+  state.EE_T_K = settings_.EE_T_K;
   state.O_T_EE = plant_.O_T_EE(state.q, state.F_T_EE);
   state.O_T_EE_d = plant_.O_T_EE(state.q_d, state.F_T_EE);
   state.O_T_EE_c = state.O_T_EE_d;
-  state.m_load = load_.mass_kg;
-  state.F_x_Cload = load_.F_x_Cload;
-  state.I_load = load_.I_load;
+  state.m_load = settings_.load.mass_kg;
+  state.F_x_Cload = settings_.load.F_x_Cload;
+  state.I_load = settings_.load.I_load;
   state.elbow = Elbow(state.q);
   state.elbow_d = state.elbow_c = Elbow(state.q_d);
   state.tau_J = tau_J_;
@@ -266,13 +197,12 @@ void SimulatedPanda::Tick(const std::optional<RobotCommand>& command) {
     modes_.EndRecovery();
     Tell("recovered");
   }
-  const bool was_state_lost = lost_states_ > 0;
-  if (was_state_lost) --lost_states_;
+  const bool was_state_lost = faults_.TakeLostState();
   const bool begins = awaits_first_command() && command.has_value();
   if (!(begins || (modes_.is_moving() && has_begun_) || settle_ticks_ > 0)) return;
   BeginFaults();
   if (modes_.is_moving()) {
-    if (command && !was_state_lost && !IsCommandLost()) {
+    if (command && !was_state_lost && !faults_.TakeLostCommand(plant_.time_s())) {
       FollowCommand(*command);
     } else if (has_begun_) {
       FollowNothing();
@@ -287,18 +217,6 @@ void SimulatedPanda::Tick(const std::optional<RobotCommand>& command) {
   MoveArm();
   FeelForces();
   CheckArm();
-}
-
-bool SimulatedPanda::IsCommandLost() {
-  const double t_s = plant_.time_s();
-  bool is_lost = lost_commands_ > 0;
-  if (is_lost) --lost_commands_;
-  for (const Fault& fault : active_) {
-    if (fault.kind == FaultKind::kLoseSome && fault.IsActive(t_s)) {
-      is_lost = random_.Uniform() < fault.rate || is_lost;
-    }
-  }
-  return is_lost;
 }
 
 void SimulatedPanda::FollowCommand(const RobotCommand& command) {
@@ -378,19 +296,9 @@ void SimulatedPanda::LoseClient() {
 }
 
 void SimulatedPanda::BeginFaults() {
-  constexpr double kRounding_s = 1e-9;
-  while (next_fault_ < script_.faults.size() &&
-         script_.faults[next_fault_].at_s <= plant_.time_s() + kRounding_s) {
-    Fault fault = script_.faults[next_fault_++];
-    fault.at_s = plant_.time_s();
+  for (const Fault& fault : faults_.Begin(plant_.time_s(), plant_.q())) {
     const int ticks = static_cast<int>(std::lround(fault.duration_s / kTick_s));
     switch (fault.kind) {
-      case FaultKind::kLoseCommands:
-        lost_commands_ = fault.count;
-        break;
-      case FaultKind::kLoseStates:
-        lost_states_ = fault.count;
-        break;
       case FaultKind::kUserStop:
         Tell("the user stop is pressed");
         modes_.PressUserStop();
@@ -406,56 +314,23 @@ void SimulatedPanda::BeginFaults() {
       case FaultKind::kError:
         Abort(ErrorSet().set(static_cast<std::size_t>(fault.error)));
         break;
-      case FaultKind::kCutLink:
-        cuts_link_ = true;
-        break;
-      case FaultKind::kBlockedJoint:
-        blocked_at_[static_cast<std::size_t>(fault.joint)] =
-            plant_.q()[static_cast<std::size_t>(fault.joint)];
-        active_.push_back(fault);
-        break;
       default:
-        active_.push_back(fault);
+        cuts_link_ = true;
     }
   }
-}
-
-Reference SimulatedPanda::DisturbedReference() const {
-  Reference reference = reference_;
-  for (const Fault& fault : active_) {
-    if (fault.kind == FaultKind::kTrackingOffset && fault.IsActive(plant_.time_s())) {
-      reference.q[static_cast<std::size_t>(fault.joint)] += fault.offset_rad;
-    }
-  }
-  return reference;
-}
-
-Joints SimulatedPanda::Disturbance() const {
-  Joints disturbance{};
-  if (active_.empty()) return disturbance;
-  const double t_s = plant_.time_s();
-  const Joints q = plant_.q(), dq = plant_.dq();
-  for (const Fault& fault : active_) {
-    if (!fault.IsActive(t_s)) continue;
-    const auto i = static_cast<std::size_t>(fault.joint);
-    if (fault.kind == FaultKind::kExternalTorque) disturbance[i] += fault.rate * (t_s - fault.at_s);
-    if (fault.kind == FaultKind::kFriction) {
-      disturbance[i] -= fault.torque_n_m * std::clamp(dq[i] / kFrictionSpeed_rad_s, -1.0, 1.0);
-    }
-    if (fault.kind == FaultKind::kBlockedJoint) {
-      disturbance[i] =
-          kBlockStiffness * (blocked_at_[i] - q[i]) - kBlockDamping * dq[i] - tau_d_[i];
-    }
-  }
-  return disturbance;
 }
 
 void SimulatedPanda::MoveArm() {
+  const double t_s = plant_.time_s();
+  const Joints q = plant_.q(), dq = plant_.dq();
   if (modes_.controller() != Controller::kExternalTorque) {
-    tau_d_ = ImpedanceTorque(impedance_, DisturbedReference(), plant_.q(), plant_.dq());
+    Reference aim = reference_;
+    const Joints offset = faults_.Offset(t_s);
+    for (std::size_t i = 0; i < offset.size(); ++i) aim.q[i] += offset[i];
+    tau_d_ = ImpedanceTorque(settings_.impedance, aim, q, dq);
   }
   const Joints before = tau_J_;
-  plant_.Step(tau_d_, Disturbance());
+  plant_.Step(tau_d_, faults_.Disturbance(t_s, q, dq, tau_d_));
   tau_J_ = plant_.motor_torque();
   for (std::size_t i = 0; i < tau_J_.size(); ++i) dtau_J_[i] = (tau_J_[i] - before[i]) / kTick_s;
 }
@@ -477,7 +352,7 @@ void SimulatedPanda::FeelForces() {
   felt_ = FilterForce(felt_, now);
   const bool is_accelerating = std::any_of(reference_.ddq.begin(), reference_.ddq.end(),
                                            [](double a) { return std::abs(a) > kAccelerating; });
-  contacts_ = FindContacts(felt_, collision_, is_accelerating);
+  contacts_ = FindContacts(felt_, settings_.collision, is_accelerating);
   if (contacts_.reflexes.any() && modes_.is_moving()) Abort(contacts_.reflexes);
 }
 

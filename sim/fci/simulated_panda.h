@@ -7,13 +7,14 @@
 #include <utility>
 #include <vector>
 
-#include "sidestep/core/random.h"
 #include "sidestep/robot/fci/errors.h"
 #include "sidestep/robot/fci/wire.h"
+#include "sidestep/sim/fci/fault_player.h"
 #include "sidestep/sim/fci/fault_script.h"
 #include "sidestep/sim/fci/mode_machine.h"
 #include "sidestep/sim/fci/packet_loss.h"
 #include "sidestep/sim/fci/panda_plant.h"
+#include "sidestep/sim/fci/panda_settings.h"
 #include "sidestep/sim/fci/reflexes.h"
 
 namespace sidestep::sim::fci {
@@ -54,17 +55,15 @@ class SimulatedPanda {
   void LoseClient();
 
   // What the network does wrong now, for the server to do.
-  bool loses_states() const { return lost_states_ > 0; }
+  bool loses_states() const { return faults_.loses_states(); }
   bool TakeLinkCut() { return std::exchange(cuts_link_, false); }
 
  private:
   void Tell(const std::string& what) const;
-  std::uint8_t Set(const robot::fci::Message& request);
   void BeginMove(const robot::fci::Message& request, robot::fci::Message& reply);
   std::uint8_t StopMove();
   std::uint8_t Recover();
 
-  bool IsCommandLost();
   void FollowCommand(const robot::fci::RobotCommand& command);
   void FollowNothing();
   void GoTo(const Reference& next);
@@ -76,14 +75,12 @@ class SimulatedPanda {
 
   void BeginFaults();
   void MoveArm();
-  robot::fci::Joints Disturbance() const;
-  Reference DisturbedReference() const;
   void FeelForces();
   void CheckArm();
 
   PandaPlant& plant_;
   FaultScript script_;
-  RandomStream random_;
+  FaultPlayer faults_;
   std::function<void(const std::string&)> tell_;
 
   ModeMachine modes_;
@@ -97,19 +94,12 @@ class SimulatedPanda {
   bool has_begun_ = false;
   int settle_ticks_ = 0, recovery_ticks_ = 0, held_ticks_ = 0;
 
-  JointImpedance impedance_;
-  robot::fci::CollisionBehaviorRequest collision_ = DefaultCollisionBehavior();
-  robot::fci::Matrix4 NE_T_EE_, EE_T_K_;
-  robot::fci::LoadRequest load_{};
+  PandaSettings settings_;
 
   ExternalForce felt_;
   Contacts contacts_;
   std::array<double, 3> hand_velocity_{};
 
-  std::size_t next_fault_ = 0;
-  std::vector<Fault> active_;
-  robot::fci::Joints blocked_at_{};
-  int lost_commands_ = 0, lost_states_ = 0;
   bool cuts_link_ = false;
 };
 
