@@ -19,11 +19,12 @@ using robot::fci::RobotCommand;
 using robot::fci::RobotState;
 
 // Own choices; the robot's are not published.
-constexpr int kSettleTicks = 500;      // after the brake, until the world stands still
-constexpr int kRecoveryTicks = 50;     // the real one takes up to seconds
-constexpr double kAccelerating = 0.1;  // rad/s^2, of the reference: which thresholds hold
-constexpr double kElbowFlip_rad = -0.467002423653011;  // of joint 4 (hardware fact: franka_ros)
+constexpr int kSettleTicks = 500;       // after the brake, until the world stands still
+constexpr int kRecoveryTicks = 50;      // the real one takes up to seconds
+constexpr double kAccelerating = 0.1;   // rad/s^2, of the reference: which thresholds hold
 constexpr double kMeasuredSpeed = 1.1;  // times its limit: a joint that only lags trips nothing
+
+constexpr double kElbowFlip_rad = -0.467002423653011;  // of joint 4. Source: franka_ros
 
 template <typename Values>
 bool AllFinite(const Values& values) {
@@ -193,7 +194,7 @@ void SimulatedPanda::Tick(const std::optional<RobotCommand>& command) {
     modes_.EndGuiding();
     Tell("the arm is free again");
   }
-  if (recovery_ticks_ > 0 && --recovery_ticks_ == 0) {
+  if (recovery_ticks_ > 0 && IsAtRest(reference_) && --recovery_ticks_ == 0) {
     modes_.EndRecovery();
     Tell("recovered");
   }
