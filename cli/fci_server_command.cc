@@ -1,7 +1,12 @@
+#include <fmt/core.h>
+
+#include <cmath>
 #include <csignal>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sidestep/cli/command.h"
@@ -9,6 +14,7 @@
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/wiring.h"
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/number_text.h"
 #include "sidestep/sim/fci/fault_script.h"
 #include "sidestep/sim/fci/panda_world.h"
 #include "sidestep/sim/fci/server.h"
@@ -75,10 +81,12 @@ scenarios::Scenario WorldOf(const ServerCommand& options, const DataPaths& paths
   return std::move(problem.scenario);
 }
 
-// Says once for each thing when the arm begins to touch it.
-class ContactTeller {
+// Judges what happens in the server's world, as a simulated run is judged: says when the arm begins
+// to touch a thing, and in the end how near it came to one.
+class Judge {
  public:
-  explicit ContactTeller(const sim::World& world) : truth_(world) {}
+  explicit Judge(const sim::World& world) : truth_(world) {}
+
   void Observe() {
     truth_.Observe();
     for (const TruthSample& sample : truth_.TakeSamples()) {
@@ -86,12 +94,29 @@ class ContactTeller {
         Print("{:.3f} s: contact with {}\n", sample.contact_s, sample.contact_object);
       }
       touched_ = sample.in_contact ? sample.contact_object : "";
+      if (!(sample.clearance_m >= nearest_.clearance_m)) nearest_ = sample;
     }
   }
 
+  void Conclude() const {
+    Print("least clearance  {}", FiniteText("{:.1f} mm", 1e3 * nearest_.clearance_m));
+    if (std::isfinite(nearest_.clearance_m)) {
+      Print(", {} and {}, at {:.2f} s", nearest_.nearest_robot_part, nearest_.nearest_object,
+            nearest_.t.seconds());
+    }
+    Print("\n");
+  }
+
  private:
+  static TruthSample Nothing() {
+    TruthSample sample;
+    sample.clearance_m = std::numeric_limits<double>::infinity();
+    return sample;
+  }
+
   sim::SimulatedTruth truth_;
   std::string touched_;
+  TruthSample nearest_ = Nothing();
 };
 
 int Serve(ServerCommand options) {
@@ -102,9 +127,9 @@ int Serve(ServerCommand options) {
   const robot::RobotModel robot = robot::RobotModel::Load(paths.models, "panda", scenario.X_WB);
   const auto world =
       sim::fci::MakePandaWorld(scenario, robot, paths.models, StartOf(options, scenario, robot));
-  ContactTeller contacts(*world);
+  Judge judge(*world);
   sim::fci::PandaPlant plant(robot, world.get());
-  plant.AfterStep([&] { contacts.Observe(); });
+  plant.AfterStep([&] { judge.Observe(); });
   sim::fci::SimulatedPanda panda(&plant, faults);
   const auto tell = [&](const std::string& what) {
     Print("{:.3f} s: {}\n", plant.time_s(), what);
@@ -126,6 +151,7 @@ int Serve(ServerCommand options) {
   FinishOutput();
   const SignalGuard guard;
   server->Run([] { return interrupted != 0; });
+  judge.Conclude();
   return 0;
 }
 

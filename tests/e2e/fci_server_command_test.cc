@@ -117,7 +117,7 @@ TEST(FciServerCommand, TellsWhatHappens) {
   for (const char* const line :
        {"connected from 127.", "0.000 s: motion started: joint positions", "s: motion finished\n",
         "s: motion aborted: communication_constraints_violation\n", "s: recovered\n",
-        "s: disconnected: "}) {
+        "s: disconnected: ", "least clearance  "}) {
     EXPECT_THAT(finished.out, HasSubstr(line));
   }
 }
