@@ -392,6 +392,19 @@ TEST(FciServer, LosesAClientThatThinksTooLong) {
   EXPECT_EQ(robot::fci::Text(error.errors()), kLost);
 }
 
+TEST(FciServer, DoesNotWaitForAFirstCommandForEver) {
+  sim::fci::ServerOptions options;
+  options.grace_s = 0.05;
+  const ServedPanda panda("", options);
+  FciClient client(panda.address());
+  const auto id =
+      client.Send(robot::fci::Request::kMove, robot::fci::ToBytes(robot::fci::MoveRequest{}));
+  EXPECT_EQ(client.AwaitReply(id).front(),
+            static_cast<std::uint8_t>(robot::fci::MoveStatus::kMotionStarted));
+  EXPECT_EQ(client.AwaitReply(id).front(),
+            static_cast<std::uint8_t>(robot::fci::MoveStatus::kReflexAborted));
+}
+
 TEST(FciServer, StopsFromInsideAndFromAnotherThread) {
   const ServedPanda panda;
   RawFciDriver driver(panda.address());

@@ -5,6 +5,7 @@
 #include <ostream>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/sim/fci/fault_player.h"
 #include "sidestep/sim/fci/fault_script.h"
 #include "sidestep/sim/fci/mode_machine.h"
 #include "sidestep/sim/fci/packet_loss.h"
@@ -183,6 +184,64 @@ TEST(Reflexes, FollowTheThresholdsOfTheirPhase) {
   force.O_F_K[2] = 20.5;
   EXPECT_EQ(FindContacts(force, thresholds, false).reflexes,
             robot::fci::Only(Error::kCartesianReflex));
+}
+
+FaultPlayer Playing(const std::string& faults) {
+  return FaultPlayer(ParseFaultScript("faults: [" + faults + "]", "f.yaml"));
+}
+
+TEST(FaultPlayer, LosesSoManyCommandsAndStates) {
+  FaultPlayer player =
+      Playing("{kind: lose_commands, at_s: 0.5, count: 3}, {kind: lose_states, at_s: 1, count: 2}");
+  EXPECT_TRUE(player.Begin(0.499, {}).empty());
+  EXPECT_FALSE(player.TakeLostCommand(0.499));
+  player.Begin(0.5, {});
+  for (int k = 0; k < 3; ++k) EXPECT_TRUE(player.TakeLostCommand(0.5));
+  EXPECT_FALSE(player.TakeLostCommand(0.5));
+  player.Begin(1, {});
+  for (int k = 0; k < 2; ++k) EXPECT_TRUE(player.TakeLostState());
+  EXPECT_FALSE(player.TakeLostState());
+}
+
+TEST(FaultPlayer, LosesByChanceAtTheRateWhileItLasts) {
+  FaultPlayer player = Playing("{kind: lose_some, at_s: 0, for_s: 1, rate: 0.05}");
+  player.Begin(0, {});
+  int lost = 0;
+  for (int k = 0; k < 20000; ++k) lost += player.TakeLostCommand(0.5) ? 1 : 0;
+  EXPECT_NEAR(lost, 1000, 4 * 31);  // four standard deviations
+  for (int k = 0; k < 1000; ++k) ASSERT_FALSE(player.TakeLostCommand(1));
+}
+
+TEST(FaultPlayer, ActsOnTheJoints) {
+  FaultPlayer player = Playing(
+      "{kind: external_torque, at_s: 1, for_s: 2, joint: 1, rate_n_m_s: 5},"
+      "{kind: friction, at_s: 1, for_s: 2, joint: 2, torque_n_m: 3},"
+      "{kind: blocked_joint, at_s: 1, for_s: 2, joint: 3},"
+      "{kind: tracking_offset, at_s: 1, for_s: 2, joint: 4, offset_rad: 0.02}");
+  const robot::fci::Joints q = {0, 0, 0.3, 0, 0, 0, 0}, still{};
+  player.Begin(1, q);
+  const robot::fci::Joints motors = {0, 0, 7, 0, 0, 0, 0};
+  robot::fci::Joints dq{};
+  dq[1] = -0.5;
+  const robot::fci::Joints torque = player.Disturbance(2, q, dq, motors);
+  EXPECT_DOUBLE_EQ(torque[0], 5);
+  EXPECT_EQ(torque[1], 3) << "against the motion";
+  EXPECT_EQ(torque[2], -7) << "undoes the motor, where the joint is blocked";
+  EXPECT_EQ(player.Disturbance(2, q, still, motors)[1], 0);
+  EXPECT_EQ(player.Offset(2)[3], 0.02);
+  EXPECT_EQ(player.Offset(3)[3], 0);
+  EXPECT_EQ(player.Disturbance(3, q, dq, motors), still);
+}
+
+TEST(FaultPlayer, HandsOnWhatIsNotItsOwn) {
+  FaultPlayer player = Playing(
+      "{kind: cut_link, at_s: 2}, {kind: user_stop, at_s: 1, for_s: 1}, {kind: friction, at_s: 1,"
+      " for_s: 1, joint: 1, torque_n_m: 1}");
+  const std::vector<Fault> begun = player.Begin(1, {});
+  ASSERT_EQ(begun.size(), 1u);
+  EXPECT_EQ(begun[0].kind, FaultKind::kUserStop);
+  EXPECT_TRUE(player.Begin(1.5, {}).empty());
+  EXPECT_EQ(player.Begin(2.5, {}).at(0).kind, FaultKind::kCutLink);
 }
 
 TEST(FaultScript, IsReadWhole) {
