@@ -37,6 +37,7 @@ constexpr double kTimeEpsilon = 1e-9;  // s; far below a physics step, far above
 constexpr double kPoll_s = 2e-3;       // on a wall clock, how long nobody looks up
 constexpr double kLongestStop_s = 3;   // an arm that is told to hold rests by then
 constexpr double kStill_rad_s = 0.01;
+constexpr double kHandOver_s = 5e-3;  // a plan is with the robot so long before it takes effect
 
 constexpr const char* kLate = "late";  // the status of a plan that came after its moment
 
@@ -248,9 +249,10 @@ class Loop {
     if (!options_.wall_clock) ScheduleCycle(now_s_ + expected.seconds());
     if (!has_seen_) return;  // nothing is known yet
     if (world_.robot->Status().mode == robot::RobotMode::kHolding) {
-      // It has left its plan by itself.
+      // It has left its plan by itself, and begins anew when it rests.
       pending_.clear();
       replanner_.Forget();
+      if (world_.robot->Read().v.cwiseAbs().maxCoeff() > kStill_rad_s) return;
     }
     begun_ = {now_s_, expected, model_->MakeField()};
     worker_->Begin(
@@ -269,7 +271,8 @@ class Loop {
     latency_.Learn(options_.wall_clock ? took_s : cpu_s);
     const double effect_s = begun_.t_s + begun_.expected.seconds();
     CycleRecord& record = cycle->record;
-    if (cycle->plan && begun_.t_s + took_s > effect_s + kTimeEpsilon) {
+    const double hand_over_s = options_.wall_clock ? kHandOver_s : -kTimeEpsilon;
+    if (cycle->plan && begun_.t_s + took_s > effect_s - hand_over_s) {
       record.accepted = false;
       record.status = kLate;
       ++result_.late_plans;

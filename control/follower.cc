@@ -60,7 +60,8 @@ const PlanSlot::Plan* Follower::PlanFor(const Measured& measured, HorizonOffset 
   if (supervisor_ && plan->number > judged_) {
     judged_ = plan->number;
     const EpisodeTime before = measured.t - period;
-    if (supervisor_->Refuses(PointOf(*plan, before), before < plan->start, measured)) {
+    const JointPoint* const other = target_ ? &*target_ : nullptr;
+    if (supervisor_->Refuses(PointOf(*plan, before), before < plan->start, other, measured)) {
       dropped_ = plan->number;
     }
   }
@@ -71,10 +72,10 @@ Command Follower::Tick(const Measured& measured, HorizonOffset period) noexcept 
   const double period_s = period.seconds();
   const PlanSlot::Plan* const plan = PlanFor(measured, period);
   const auto brake = [&] { return tracker_.Brake(measured.commanded, period_s); };
+  target_.reset();
+  if (plan != nullptr) target_ = PointOf(*plan, measured.t);
   Command command;
-  command.motion = plan == nullptr
-                       ? brake()
-                       : tracker_.Step(measured.commanded, PointOf(*plan, measured.t), period_s);
+  command.motion = target_ ? tracker_.Step(measured.commanded, *target_, period_s) : brake();
 
   Reaction reaction = Reaction::kNone;
   if (supervisor_) reaction = supervisor_->Judge(measured, command.motion, period_s);
@@ -82,6 +83,7 @@ Command Follower::Tick(const Measured& measured, HorizonOffset period) noexcept 
     command.motion = brake();
     // The robot is not where the plan is any more: it goes on by a plan that begins after this.
     if (plan != nullptr) dropped_ = plan->number;
+    target_.reset();
   }
 
   robot::RobotMode mode = this->mode();

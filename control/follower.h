@@ -84,8 +84,9 @@ class Follower {
   RingLog<TickRecord> log_;
 
   // Of the thread that ticks: numbers of plans.
-  std::uint64_t judged_ = 0;   // by the supervisor, the latest
-  std::uint64_t dropped_ = 0;  // neither that one nor those before it are followed any more
+  std::uint64_t judged_ = 0;          // by the supervisor, the latest
+  std::optional<JointPoint> target_;  // of the tick before, if a plan was followed
+  std::uint64_t dropped_ = 0;         // neither that one nor those before it are followed any more
 };
 
 }  // namespace sidestep::control

@@ -51,10 +51,12 @@ Supervisor::Supervisor(const robot::RobotModel& robot, const JerkLimitedTracker&
   }
 }
 
-bool Supervisor::Refuses(const JointPoint& before, bool begins, const Measured& measured) noexcept {
+bool Supervisor::Refuses(const JointPoint& before, bool begins, const JointPoint* other,
+                         const Measured& measured) noexcept {
   const double q_rad = LargestDifference(before.q, measured.commanded.q);
   const double v_rad_s = LargestDifference(before.v, measured.commanded.v);
-  const double a_rad_s2 = begins ? 0 : LargestDifference(before.a, measured.commanded.a);
+  const JointPoint& goes_on = other == nullptr ? measured.commanded : *other;
+  const double a_rad_s2 = begins ? 0 : LargestDifference(before.a, goes_on.a);
   now_ = measured.t;
   is_found_[static_cast<std::size_t>(SafetyCheck::kSplice)] = false;  // each plan is told of
   const Reaction worst = std::exchange(worst_, Reaction::kNone);

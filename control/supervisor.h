@@ -42,10 +42,12 @@ class Supervisor {
   /// Whether a plan is refused that is to be followed from this tick on.
   /// @param before where it is at the tick before, when measured.commanded was sent; its first
   /// point
-  ///   if it begins now. @param begins whether it does: plans are cubics whose acceleration jumps
-  ///   at support states, of which the first is one, so that only a plan that goes on with a motion
-  ///   has to agree with its acceleration.
-  bool Refuses(const JointPoint& before, bool begins, const Measured& measured) noexcept;
+  ///   if it begins now. @param begins whether it does: the acceleration of plans jumps at support
+  ///   states, of which the first is one. A plan that goes on with another has to agree with its
+  ///   acceleration, too. @param other where that one is at the tick before; null: none is
+  ///   followed.
+  bool Refuses(const JointPoint& before, bool begins, const JointPoint* other,
+               const Measured& measured) noexcept;
 
   /// What is to be done instead of sending `next`: kNone, kHold or kBrake.
   Reaction Judge(const Measured& measured, const JointPoint& next, double period_s) noexcept;

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "sidestep/core/random.h"
 #include "sidestep/core/trajectory.h"
 
 namespace sidestep::control {

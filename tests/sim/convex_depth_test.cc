@@ -5,15 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "sidestep/core/pose.h"
+#include "sidestep/core/random.h"
 #include "sidestep/core/shape.h"
 #include "sidestep/sim/convex_distance.h"
 #include "tests/sim/small_model.h"
+#include "tests/support/random_points.h"
 
 namespace sidestep::sim {
 namespace {
@@ -164,10 +165,10 @@ class EveryPair : public ::testing::TestWithParam<Pair> {};
 
 TEST_P(EveryPair, IsAsDeepAsTheBestOfManyDirectionsSays) {
   const auto& [name, a, b] = GetParam();
-  std::mt19937 generator(7);
+  RandomStream generator(7, "poses");
   int num_overlapping = 0;
   for (int trial = 0; trial < 40; ++trial) {
-    const Eigen::Isometry3d X_AB = At(RandomPose(0.25, &generator));
+    const Eigen::Isometry3d X_AB = At(RandomPose(generator, 0.25));
     const double depth = ConvexDepth(a, b, X_AB);
     const double brute_force = BruteForceDepth(a, b, X_AB);
     EXPECT_LE(depth, brute_force + kTolerance_m);
@@ -177,8 +178,7 @@ TEST_P(EveryPair, IsAsDeepAsTheBestOfManyDirectionsSays) {
     EXPECT_NEAR(ConvexDepth(b, a, X_AB.inverse()), depth, kTolerance_m);
     for (int i = 0; i < 20; ++i) {  // less far, nowhere do they come apart
       Eigen::Isometry3d shifted = X_AB;
-      shifted.translation() +=
-          (depth - 1e-6) * RandomPose(1, &generator).translation().normalized();
+      shifted.translation() += (depth - 1e-6) * RandomPose(generator, 1).translation().normalized();
       EXPECT_EQ(ConvexDistance(a, b, shifted), 0);
     }
   }
@@ -190,12 +190,12 @@ TEST_P(EveryPair, IsAsDeepAsTheBestOfManyDirectionsSays) {
 TEST_P(EveryPair, ChangesNoFasterThanTheSolidsMove) {
   const auto& [name, a, b] = GetParam();
   constexpr double kStep_m = 0.001;
-  std::mt19937 generator(5);
+  RandomStream generator(5, "poses");
   for (int motion = 0; motion < 4; ++motion) {
-    const Pose X_AB = motion == 0 ? Pose() : RandomPose(0.1, &generator);
+    const Pose X_AB = motion == 0 ? Pose() : RandomPose(generator, 0.1);
     const Vector3d way = motion == 0
                              ? Vector3d(1, 0, 0)
-                             : Vector3d(RandomPose(1, &generator).translation().normalized());
+                             : Vector3d(RandomPose(generator, 1).translation().normalized());
     double before = 0, deepest = 0;
     for (int i = -1500; i <= 1500; ++i) {
       Eigen::Isometry3d X = At(X_AB);
@@ -235,9 +235,9 @@ double BoxDepth(const Vector3d& half_a, const Vector3d& half_b, const Eigen::Iso
 }
 
 TEST(ConvexDepth, OfTwoBoxesIsThatAlongTheBestOfTheirFifteenAxes) {
-  std::mt19937 generator(3);
+  RandomStream generator(3, "poses");
   for (int trial = 0; trial < 500; ++trial) {
-    const Eigen::Isometry3d X_AB = At(RandomPose(0.3, &generator));
+    const Eigen::Isometry3d X_AB = At(RandomPose(generator, 0.3));
     EXPECT_NEAR(ConvexDepth(kBox, kBox, X_AB), BoxDepth(kBox.size_m, kBox.size_m, X_AB),
                 kTolerance_m);
   }
@@ -248,10 +248,10 @@ TEST(ConvexDepth, OfABallIsItsRadiusLessTheSignedDistanceOfItsCentre) {
                                                   {kCapsule, Capsule{0.1, 0.6}},
                                                   {kCylinder, Cylinder{0.1, 0.6}},
                                                   {kEllipsoid, Ellipsoid{{0.1, 0.2, 0.3}}}};
-  std::mt19937 generator(2);
+  RandomStream generator(2, "poses");
   for (const auto& [solid, shape] : solids) {
     for (int trial = 0; trial < 300; ++trial) {
-      const Pose X_AB = RandomPose(0.3, &generator);
+      const Pose X_AB = RandomPose(generator, 0.3);
       const double wanted = 0.1 - SignedDistance(shape, X_AB.translation());
       EXPECT_NEAR(ConvexDepth(solid, kBall, At(X_AB)), std::max(0.0, wanted), kTolerance_m);
     }
