@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <vector>
 
 #include "sidestep/core/input_error.h"
@@ -112,6 +113,21 @@ class Comparison {
                 "belongs to group 2"
               : "must have contype and conaffinity 1, or 0 as a picture of group 2; has " +
                     std::to_string(type) + " and " + std::to_string(affinity));
+    }
+  }
+
+  // A link that is seen can also touch.
+  void CheckPictures() const {
+    std::set<int> solid;  // links, by the body that stands for all that are fixed to it
+    for (int geom = 0; geom < model_.ngeom; ++geom) {
+      const int body = model_.geom_bodyid[geom];
+      if (IsOfRobot(body) && model_.geom_contype[geom] != 0) solid.insert(model_.body_weldid[body]);
+    }
+    for (int geom = 0; geom < model_.ngeom; ++geom) {
+      const int body = model_.geom_bodyid[geom];
+      if (!IsOfRobot(body) || solid.count(model_.body_weldid[body]) > 0) continue;
+      FailInMjcf("body", NameOf(mjOBJ_BODY, body),
+                 "is only a picture: neither it nor what is fixed to it has a geom that can touch");
     }
   }
 
@@ -336,6 +352,7 @@ void CheckAgreement(const robot::RobotModel& robot, const mjModel& model,
   comparison.CheckJoints();
   comparison.CheckMotors();
   comparison.CheckGeoms();
+  comparison.CheckPictures();
   comparison.CheckLinks();
   comparison.CheckKinematics();
 }
