@@ -19,6 +19,10 @@ constexpr std::size_t kLogLength = 4096;
 // Identical commands before the end of a motion: a real arm has settled by then.
 constexpr int kTicksToSettle = 250;
 
+// Of the robot's limits, without a supervisor that keeps more: its controller judges what it is
+// sent by differences, and stops where they reach a limit.
+constexpr double kSpeedShare = 0.97, kAccelerationShare = 0.95, kJerkShare = 0.5;
+
 // Thresholds above which the robot stops by itself: those that franka_ros starts with
 // (frankaemika/franka_ros, franka_control_node.yaml, Apache-2.0).
 constexpr robot::fci::Joints kTorques_n_m = {20, 20, 18, 18, 16, 14, 12};
@@ -85,7 +89,9 @@ PandaRobot::PandaRobot(std::unique_ptr<FciDriver> driver, const robot::RobotMode
                        const PandaOptions& options)
     : driver_(std::move(driver)),
       options_(options),
-      follower_(SevenJoints(robot), control::TrackerLimits::Of(robot), WithTorques(options.safety)),
+      follower_(SevenJoints(robot),
+                control::TrackerLimits::Of(robot, kSpeedShare, kAccelerationShare, kJerkShare),
+                WithTorques(options.safety)),
       seen_(kLogLength) {
   driver_->Configure(SettingsFor(robot));
   const RobotSnapshot state = driver_->ReadOnce();

@@ -254,8 +254,8 @@ TEST_P(EveryModel, SticksOutOfItsSpheresByNoMoreThanIsDocumented) {
 }
 
 // What the safety supervisor takes the arm for. Capsules cover the maker's meshes; the solids of an
-// MJCF, cylinders with sharp rims, stick out where the real link is rounded: by less than half of the
-// 30 mm that the supervisor keeps for what is not known exactly.
+// MJCF, cylinders with sharp rims, stick out where the real link is rounded: by less than half of
+// the 30 mm that the supervisor keeps for what is not known exactly.
 TEST_P(EveryModel, SticksOutOfItsCapsulesByLessThanTheSupervisorsMargin) {
   constexpr double kMoving_mm = 13, kBase_mm = 22;
   if (robot_.capsules().empty()) GTEST_SKIP() << "it has none";
