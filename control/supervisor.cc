@@ -25,6 +25,15 @@ double LargestDifference(const JointVector& a, const JointVector& b) {
 
 bool IsMoving(const JointPoint& point) { return !point.v.isZero(0) || !point.a.isZero(0); }
 
+// No more than the distance below: from the ball around the capsule to that around the obstacle.
+double LeastDistance(const ArmCapsules::Placed& capsule, const ObstacleState& obstacle,
+                     const Eigen::Vector3d& shift_W) {
+  const Eigen::Vector3d between =
+      obstacle.X_WO.translation() + shift_W - (capsule.a + capsule.b) / 2;
+  return between.norm() - (capsule.b - capsule.a).norm() / 2 - capsule.radius_m -
+         obstacle.half_extents_m.norm() - obstacle.radius_m;
+}
+
 // From the capsule to the obstacle, both as they are, when the obstacle's box is moved by
 // `shift_W`.
 double Distance(const ArmCapsules::Placed& capsule, const ObstacleState& obstacle,
@@ -175,7 +184,13 @@ void Supervisor::JudgePlaces(const ObstacleReport* report, const JointPoint& nex
       for (const ObstacleState& obstacle : report->obstacles) {
         const double ahead_s = std::max(0.0, (now_ - obstacle.t).seconds() + placed_s_[k]);
         const double reach_m = settings_.obstacle_acceleration_m_s2 * ahead_s * ahead_s / 2;
-        const double distance_m = Distance(at, obstacle, ahead_s * obstacle.v_W);
+        const Eigen::Vector3d shift_W = ahead_s * obstacle.v_W;
+        // Most are too far to matter, which the balls around both tell sooner.
+        const double least_m = LeastDistance(at, obstacle, shift_W);
+        const bool matters =
+            least_m - reach_m - half_way_m < margin_m || (k == 0 && least_m < nearest_m);
+        if (!matters) continue;
+        const double distance_m = Distance(at, obstacle, shift_W);
         if (k == 0) nearest_m = std::min(nearest_m, distance_m);
         margin_m = std::min(margin_m, distance_m - reach_m - half_way_m);
       }
