@@ -86,6 +86,8 @@ void Session::HandleRequests() {
 // False where the network loses it.
 bool Session::SendState() {
   if (panda_.loses_states()) return false;
+  // A request may have changed the state since it was sent: it has a new one's number then.
+  if (panda_.message_id() == state_id_) panda_.NumberAnew();
   const robot::fci::RobotState state = panda_.State();
   state_id_ = state.message_id;
   states_.Send(robot::fci::Encode(state));
@@ -178,15 +180,14 @@ void Session::Run(const std::function<bool()>& stop) {
     }
     if (panda_.TakeLinkCut()) throw robot::fci::LinkClosed("the network is cut");
     HandleRequests();
-    if (!SendState()) {
-      panda_.Tick(std::nullopt);
-      continue;
-    }
-    SendReplies();
-    if (options_.clock == ServerClock::kLockStep) {
+    const bool is_sent = SendState();
+    if (is_sent) SendReplies();
+    if (options_.clock == ServerClock::kWall) {
+      StepByTheWall();
+    } else if (is_sent) {
       StepLocked();
     } else {
-      StepByTheWall();
+      panda_.Tick(std::nullopt);
     }
   }
 }

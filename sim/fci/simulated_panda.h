@@ -47,6 +47,8 @@ class SimulatedPanda {
   /// Whether the arm still brakes or settles after a motion: ticks without a client.
   bool is_stopping() const { return !modes_.is_moving() && settle_ticks_ > 0; }
   std::uint64_t message_id() const { return message_id_; }
+  /// A client takes no state whose number it has seen; time does not go on by this.
+  void NumberAnew() { ++message_id_; }
   double world_time_s() const { return plant_.time_s(); }
 
   /// A millisecond on. None: no command came in time.

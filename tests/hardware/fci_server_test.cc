@@ -483,7 +483,9 @@ TEST(FciServer, ShowsTheEndOfAMotionBeforeItTellsIt) {
   const auto look = [&] {
     bool is_new = false;
     while (const auto bytes = states.Receive(kRobotStateSize)) {
-      state = DecodeRobotState(*bytes);
+      const RobotState next = DecodeRobotState(*bytes);
+      EXPECT_GT(next.message_id, state.message_id) << "libfranka takes no state twice";
+      state = next;
       is_new = true;
     }
     return is_new;
