@@ -21,7 +21,11 @@ std::unique_ptr<hardware::FciDriver> ConnectPanda(const std::string& address) {
     if (!IsLoopback(address)) return hardware::MakeLibfrankaDriver(address, {});
     return std::make_unique<hardware::RawFciDriver>(numeric);
   } catch (const hardware::FciError& error) {
-    throw InputError("--robot", error.what());
+    const std::string hint =
+        IsLoopback(address) && error.kind() == hardware::FciError::Kind::kNetwork
+            ? " (`sidestep fci-server` starts a simulated one)"
+            : "";
+    throw InputError("--robot", error.what() + hint);
   }
 }
 

@@ -156,7 +156,11 @@ Problem LoadProblem(const std::string& name, const Overrides& overrides, const D
     throw InputError("SCENARIO", "'" + name + "' has no robot: it can be drawn (sidestep field) " +
                                      "and timed (sidestep reproduce sdf_timing), but not run");
   }
-  return AddRobot(std::move(scenario), paths);
+  Problem problem = AddRobot(std::move(scenario), paths);
+  if (overrides.safety && *overrides.safety != "off" && problem.robot.capsules().empty()) {
+    throw InputError("--safety", problem.robot.name() + " has no capsules to be supervised by");
+  }
+  return problem;
 }
 
 Scene LoadScene(const std::string& name, const Overrides& overrides, const DataPaths& paths) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sidestep/record/questions.h"
+#include "sidestep/scenarios/scenario.h"
 
 namespace sidestep::render {
 namespace {
@@ -30,6 +31,16 @@ Pose Between(const Pose& a, const Pose& b, double share) {
               a.translation() + share * (b.translation() - a.translation()));
 }
 
+std::vector<Pose> PrescribedAt(const record::Recording& recording, EpisodeTime t) {
+  std::vector<Pose> poses;
+  if (recording.scenario_yaml.empty()) return poses;
+  const auto scenario = scenarios::ParseScenario(recording.scenario_yaml, "the recorded scenario");
+  for (const scenarios::MovingObstacle& obstacle : scenario.moving_obstacles) {
+    poses.push_back(scenarios::PoseAt(obstacle, t));
+  }
+  return poses;
+}
+
 template <typename Sample>
 EpisodeTime TimeOfSample(const Sample& sample) {
   return sample.t;
@@ -49,8 +60,8 @@ Pose PoseAt(const std::vector<EpisodeTime>& times, const std::vector<Pose>& pose
 }
 
 std::vector<Pose> ObstaclesAt(const record::Recording& recording, EpisodeTime t) {
+  if (recording.truth.empty()) return PrescribedAt(recording, t);
   std::vector<Pose> poses;
-  if (recording.truth.empty()) return poses;
   const Position at = Locate(recording.truth, t, TimeOfSample<TruthSample>);
   const std::vector<Pose>& before = recording.truth[at.before].X_WO;
   const std::vector<Pose>& after = recording.truth[at.after].X_WO;

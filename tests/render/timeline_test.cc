@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "sidestep/scenarios/scenario.h"
 #include "tests/render/sample_recording.h"
 
 namespace sidestep::render {
@@ -51,6 +52,19 @@ TEST(Timeline, FollowsTheObstacleAndItsSpeed) {
     EXPECT_NEAR(ObstacleSpeedAt(recording, EpisodeTime(t_s)), kTrolleySpeed_m_s, 1e-9) << t_s;
   }
   EXPECT_EQ(ObstacleSpeedAt(record::Recording(), EpisodeTime(0)), 0);
+}
+
+TEST(Timeline, FollowsWhatTheScenarioPrescribesWhereNobodyKnowsTheTruth) {
+  record::Recording recording = MakeSampleRecording({});
+  recording.truth.clear();
+  const scenarios::Scenario walkway =
+      scenarios::LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/hsr_walkway.yaml");
+  recording.scenario_yaml = scenarios::ToYaml(walkway);
+  const std::vector<Pose> poses = ObstaclesAt(recording, EpisodeTime(1.5));
+  ASSERT_EQ(poses.size(), 1u);
+  // From y = 2 m at 1.4 m/s.
+  EXPECT_NEAR(poses[0].translation().y(), 2 - 1.4 * 1.5, 1e-12);
+  EXPECT_NEAR(ObstacleSpeedAt(recording, EpisodeTime(1)), 1.4, 1e-9);
 }
 
 TEST(Timeline, KnowsWhichPlanIsInForce) {
