@@ -37,6 +37,7 @@ constexpr double kTimeEpsilon = 1e-9;  // s; far below a physics step, far above
 constexpr double kPoll_s = 2e-3;       // on a wall clock, how long nobody looks up
 constexpr double kLongestStop_s = 3;   // an arm that is told to hold rests by then
 constexpr double kStill_rad_s = 0.01;
+constexpr double kTick_s = 1.5e-3;    // a robot has looked at what it was told by then
 constexpr double kHandOver_s = 5e-3;  // a plan is with the robot so long before it takes effect
 
 constexpr const char* kLate = "late";  // the status of a plan that came after its moment
@@ -78,8 +79,9 @@ class Loop {
         replanner_(*planner_, {scenario.horizon_s, scenario.step_s, scenario.q_goal}),
         goal_(scenario.q_goal, scenario.dwell_s),
         latency_(scenario),
-        clock_(options.wall_clock ? MakeWallClock() : MakeVirtualClock()),
-        worker_(options.wall_clock ? MakeThreadWorker() : MakeInlineWorker()),
+        clock_(options.clock == EpisodeClock::kWall ? MakeWallClock() : MakeVirtualClock()),
+        is_real_time_(options.clock != EpisodeClock::kVirtual),
+        worker_(is_real_time_ ? MakeThreadWorker() : MakeInlineWorker()),
         recorder_(scenario, robot, world),
         end_s_(kHorizons * scenario.horizon_s) {
     if (scenario.safety.profile != scenarios::SafetyProfile::kOff) {
@@ -126,13 +128,14 @@ class Loop {
       if (status.mode == robot::RobotMode::kFault) return Stop("the robot stopped: " + status.why);
       // Of things due at the same time, plans take effect first, then scans, then a new cycle.
       double next_s = std::min({NextEffect(), NextScan(), NextCycle(), end_s_});
-      if (options_.wall_clock) next_s = std::min(next_s, now_s_ + kPoll_s);
+      if (is_real_time_) next_s = std::min(next_s, now_s_ + kPoll_s);
       Advance(clock_->WaitUntil(EpisodeTime(std::max(now_s_, next_s))).seconds());
       if (now_s_ >= end_s_) break;
       TakeCycle();
       if (NextEffect() <= now_s_) {
         world_.robot->Submit(pending_.front().plan.trajectory, pending_.front().plan.start);
         pending_.pop_front();
+        submitted_s_ = now_s_;
       } else if (NextScan() <= now_s_) {
         Sense();
       } else if (NextCycle() <= now_s_) {
@@ -188,6 +191,9 @@ class Loop {
   void Advance(double t_s) {
     now_s_ = t_s;
     world_.robot->AdvanceTo(EpisodeTime(t_s));
+    if (options_.clock == EpisodeClock::kRobot) {
+      now_s_ = std::max(now_s_, world_.robot->Read().t.seconds());
+    }
     KeepTicks();
     KeepTruth();
     for (SafetyEvent& event : world_.robot->TakeSafetyEvents()) {
@@ -246,9 +252,11 @@ class Loop {
     const HorizonOffset expected = latency_.Expected();
     next_cycle_s_ = ++cycle_index_ / scenario_.replan_rate_hz;
     // In real time a cycle that is done early need not wait for its moment.
-    if (!options_.wall_clock) ScheduleCycle(now_s_ + expected.seconds());
+    if (!is_real_time_) ScheduleCycle(now_s_ + expected.seconds());
     if (!has_seen_) return;  // nothing is known yet
-    if (world_.robot->Status().mode == robot::RobotMode::kHolding) {
+    // What was submitted a moment ago may be followed from the next tick on.
+    const bool may_go_on = now_s_ - submitted_s_ <= kTick_s;
+    if (!may_go_on && world_.robot->Status().mode == robot::RobotMode::kHolding) {
       // It has left its plan by itself, and begins anew when it rests.
       pending_.clear();
       replanner_.Forget();
@@ -258,7 +266,7 @@ class Loop {
     worker_->Begin(
         [this, task = replanner_.Prepare(EpisodeTime(now_s_), world_.robot->Read(), expected, goal_,
                                          begun_.field)] { return replanner_.Work(task); });
-    if (!options_.wall_clock) TakeCycle();
+    if (!is_real_time_) TakeCycle();
   }
 
   // Takes the result of a cycle, if one is there.
@@ -266,12 +274,11 @@ class Loop {
     std::optional<planner::CycleResult> cycle = worker_->TakeFinished();
     if (!cycle) return;
     const double cpu_s = KeepTimes(*cycle);
-    const double took_s =
-        options_.wall_clock ? now_s_ - begun_.t_s : latency_.Charge(cpu_s).seconds();
-    latency_.Learn(options_.wall_clock ? took_s : cpu_s);
+    const double took_s = is_real_time_ ? now_s_ - begun_.t_s : latency_.Charge(cpu_s).seconds();
+    latency_.Learn(is_real_time_ ? took_s : cpu_s);
     const double effect_s = begun_.t_s + begun_.expected.seconds();
     CycleRecord& record = cycle->record;
-    const double hand_over_s = options_.wall_clock ? kHandOver_s : -kTimeEpsilon;
+    const double hand_over_s = is_real_time_ ? kHandOver_s : -kTimeEpsilon;
     if (cycle->plan && begun_.t_s + took_s > effect_s - hand_over_s) {
       record.accepted = false;
       record.status = kLate;
@@ -280,7 +287,7 @@ class Loop {
       replanner_.Accept(*cycle);
       // It agrees with what runs until it takes effect, or begins then. On a wall clock, where
       // nobody may be looking at that very moment, the robot has it before.
-      pending_.push_back({*cycle->plan, options_.wall_clock ? now_s_ : effect_s});
+      pending_.push_back({*cycle->plan, is_real_time_ ? now_s_ : effect_s});
     }
     ScheduleCycle(begun_.t_s + took_s);
     record.objects = model_->DescribeObjects(planner::TimesToDescribe(record));
@@ -335,6 +342,7 @@ class Loop {
   GoalWatch goal_;
   LatencyModel latency_;
   std::unique_ptr<Clock> clock_;
+  const bool is_real_time_;
   std::unique_ptr<PlanningWorker> worker_;
   EpisodeRecorder recorder_;
   std::optional<SafetyWatch> safety_;
@@ -346,6 +354,7 @@ class Loop {
   double next_cycle_s_ = 0;
   double end_s_;
   double sense_s_ = 0;
+  double submitted_s_ = -1;  // the latest plan
   bool has_seen_ = false;
   bool is_aborted_ = false;
   EpisodeResult result_;

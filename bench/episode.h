@@ -50,15 +50,22 @@ struct EpisodeResult {
   std::vector<SafetyEvent> safety_events;  ///< of the robot's supervisor, in order
 };
 
+/// What an episode's time goes by.
+enum class EpisodeClock {
+  kVirtual,  ///< time passes only in what is simulated
+  /// As it does: planning has a thread of its own, and a plan that is not there when it was to take
+  /// effect is dropped. No two such runs are alike.
+  kWall,
+  kRobot  ///< the same by the robot's own clock, which nobody can hurry
+};
+
 /// How an episode is run, beside what the scenario says.
 struct EpisodeOptions {
   FieldObserver observe_field;
   /// Asked again and again: once it says true, the robot brakes, and when it rests the episode ends
   /// as aborted.
   std::function<bool()> is_stopped;
-  /// On a wall clock time passes as it does, planning has a thread of its own, and a plan that is
-  /// not there when it was to take effect is dropped. No two such runs are alike.
-  bool wall_clock = false;
+  EpisodeClock clock = EpisodeClock::kVirtual;
 };
 
 /// Runs one closed loop: sense, predict, re-plan, splice, move, until 0.5 s after the goal is

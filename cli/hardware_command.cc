@@ -82,7 +82,10 @@ int DryRun(const HardwareOptions& options, Problem problem, const DataPaths& pat
   const bench::EpisodeResult result =
       bench::RunEpisode(scenario, problem.robot, SimulatedWorlds(paths));
   PrintOutcome(result, scenario);
-  return 0;
+  const bool is_ready = state.mode == robot::fci::RobotMode::kIdle && off_rad <= 0.02;
+  if (!is_ready)
+    PrintError("hardware run: the robot is not ready: it must be idle, at the start\n");
+  return is_ready ? 0 : 1;
 }
 
 int RunOnHardware(HardwareOptions options) {
@@ -94,6 +97,9 @@ int RunOnHardware(HardwareOptions options) {
       {"trace.h5", "result.json"});
 
   const bool lockstep = options.clock == "lockstep";
+  if (!lockstep && problem.scenario.latency == scenarios::Latency::kNone) {
+    throw InputError("replanning.latency", "planning takes time on hardware: charged or measured");
+  }
   if (lockstep && !IsLoopback(options.robot)) {
     throw InputError("--clock", "a real robot has a clock of its own: wall");
   }
@@ -103,7 +109,7 @@ int RunOnHardware(HardwareOptions options) {
       paths, options.robot, {sim::SafetyOf(problem.scenario, problem.robot), lockstep},
       [&panda](hardware::PandaRobot* robot) { panda = robot; });
   bench::EpisodeOptions episode;
-  episode.wall_clock = !lockstep;
+  episode.clock = lockstep ? bench::EpisodeClock::kVirtual : bench::EpisodeClock::kRobot;
   episode.is_stopped = [&] {
     if (signals.count() > 1 && panda != nullptr) panda->StopNow();
     return signals.count() > 0;
@@ -139,14 +145,14 @@ int GoToStart(HardwareOptions options) {
   const DataPaths paths = FindDataPaths();
   const Problem problem = LoadForHardware(options, paths);
   control::SafetySettings safety = sim::SafetyOf(problem.scenario, problem.robot);
-  safety.stale_s = 1e9;  // it moves unseeing
+  safety.stale_s = 1e9;       // it moves unseeing
+  const StopSignals signals;  // until the robot has come to rest, below
   hardware::PandaRobot panda(ConnectPanda(options.robot), problem.robot,
                              {safety, options.clock == "lockstep"});
   const Trajectory way =
       hardware::SlowMove(problem.robot, panda.Read().q, problem.scenario.q_start);
   const double seconds = way.t_s(way.num_states() - 1);
   AskToMove(options, seconds);
-  const StopSignals signals;
   panda.AdvanceTo(EpisodeTime(0.01));
   panda.Submit(way, EpisodeTime(0.02));
   for (double t_s = 0.02; t_s < seconds + 0.5 && signals.count() == 0; t_s += 0.02) {
@@ -155,6 +161,9 @@ int GoToStart(HardwareOptions options) {
   }
   const double off_rad = (panda.Read().q - problem.scenario.q_start).cwiseAbs().maxCoeff();
   Print("from the start   {:.4f} rad\n", off_rad);
+  for (const SafetyEvent& event : panda.TakeSafetyEvents()) {
+    Print("supervisor       {:.3f} s: {}: {}\n", event.t.seconds(), event.check, event.reaction);
+  }
   return signals.count() == 0 && off_rad <= 0.02 ? 0 : 1;
 }
 

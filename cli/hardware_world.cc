@@ -65,7 +65,13 @@ bench::WorldFactory HardwareWorlds(const DataPaths& paths, const std::string& ad
                                    const hardware::PandaOptions& options,
                                    const std::function<void(hardware::PandaRobot*)>& on_connected) {
   return [=](const scenarios::Scenario& scenario, const robot::RobotModel& robot) {
-    auto panda = std::make_unique<hardware::PandaRobot>(ConnectPanda(address), robot, options);
+    auto driver = ConnectPanda(address);
+    std::unique_ptr<hardware::PandaRobot> panda;
+    try {
+      panda = std::make_unique<hardware::PandaRobot>(std::move(driver), robot, options);
+    } catch (const hardware::FciError& error) {
+      throw InputError("--robot", error.what());
+    }
     CheckAtStart(*panda, scenario);
     on_connected(panda.get());
     const auto stage = std::make_shared<VirtualObstacles>(std::move(panda), scenario, paths);

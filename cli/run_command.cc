@@ -43,8 +43,10 @@ int Run(const RunOptions& options) {
   const StopSignals signals;
   const bench::EpisodeOptions episode = {.observe_field = {},
                                          .is_stopped = [&] { return signals.count() > 0; },
-                                         .wall_clock = options.clock == "wall"};
-  if (episode.wall_clock && problem.scenario.latency == scenarios::Latency::kNone) {
+                                         .clock = options.clock == "wall"
+                                                      ? bench::EpisodeClock::kWall
+                                                      : bench::EpisodeClock::kVirtual};
+  if (options.clock == "wall" && problem.scenario.latency == scenarios::Latency::kNone) {
     throw InputError("--clock",
                      "on a wall clock planning takes time: --latency charged or measured");
   }

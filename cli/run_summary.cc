@@ -46,7 +46,8 @@ void PrintOutcome(const bench::EpisodeResult& result, const scenarios::Scenario&
   if (!result.reason.empty()) Print("reason           {}\n", result.reason);
   Print("first contact    {}\n", number("first_contact_s", 1, "{:.3f} s"));
   Print("least clearance  {}\n", number("min_clearance_m", 1e3, "{:.1f} mm"));
-  Print("time to goal     {}\n", number("time_to_goal_s", 1, "{:.3f} s"));
+  Print("time to goal     {}\n",
+        FiniteText("{:.3f} s", metrics.at("time_to_goal_s"), "- (not reached)"));
   if (scenario.dwell_s > 0) {
     Print("dwell of {:<7}  {}\n", fmt::format("{:g} s", scenario.dwell_s),
           number("time_to_dwell_s", 1, "over at {:.3f} s"));

@@ -81,6 +81,7 @@ struct SafetySettings {
   double torque_s = 0.02;         ///< 12: for so long
   double success_rate = 0.9;      ///< 13: of the latest 100 packets
   int lost_in_a_row = 5;          ///< 13
+  double too_fast_s = 0.1;        ///< 20: for so long
   double resume_s = 1;
 };
 

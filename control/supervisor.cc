@@ -62,19 +62,23 @@ Supervisor::Supervisor(const robot::RobotModel& robot, const JerkLimitedTracker&
 
 bool Supervisor::Refuses(const JointPoint& before, bool begins, const JointPoint* other,
                          const Measured& measured) noexcept {
-  const double q_rad = LargestDifference(before.q, measured.commanded.q);
-  const double v_rad_s = LargestDifference(before.v, measured.commanded.v);
-  const JointPoint& goes_on = other == nullptr ? measured.commanded : *other;
-  const double a_rad_s2 = begins ? 0 : LargestDifference(before.a, goes_on.a);
+  // It has to agree with the plan that is followed, which the robot may lag behind, or with the
+  // robot.
+  const auto shares = [&](const JointPoint& reference, bool with_a) {
+    return std::array<double, 3>{
+        LargestDifference(before.q, reference.q) / settings_.splice_q_rad,
+        LargestDifference(before.v, reference.v) / settings_.splice_v_rad_s,
+        with_a ? LargestDifference(before.a, reference.a) / settings_.splice_a_rad_s2 : 0};
+  };
+  const auto largest = [](const std::array<double, 3>& of) {
+    return *std::max_element(of.begin(), of.end());
+  };
+  double share = largest(shares(measured.commanded, !begins && other == nullptr));
+  if (other != nullptr) share = std::min(share, largest(shares(*other, !begins)));
   now_ = measured.t;
   is_found_[static_cast<std::size_t>(SafetyCheck::kSplice)] = false;  // each plan is told of
   const Reaction worst = std::exchange(worst_, Reaction::kNone);
-  const auto find = [&](double value, double limit) {
-    if (!(value <= limit)) Find(SafetyCheck::kSplice, Reaction::kRefuse, true, value, limit);
-  };
-  find(q_rad, settings_.splice_q_rad);
-  find(v_rad_s, settings_.splice_v_rad_s);
-  find(a_rad_s2, settings_.splice_a_rad_s2);
+  if (!(share <= 1)) Find(SafetyCheck::kSplice, Reaction::kRefuse, true, share, 1);
   const bool is_refused = worst_ != Reaction::kNone;
   worst_ = worst;
   return is_refused && settings_.profile == SafetyProfile::kLab;
@@ -122,8 +126,15 @@ void Supervisor::JudgePerception(const ObstacleReport* report) {
   // What is stale as a whole is told once.
   Find(SafetyCheck::kObstacleLost, Reaction::kHold,
        oldest_s > settings_.stale_s && age_s <= settings_.stale_s, oldest_s, settings_.stale_s);
-  Find(SafetyCheck::kObstacleTooFast, Reaction::kBrake, fastest_m_s > settings_.obstacle_speed_m_s,
-       fastest_m_s, settings_.obstacle_speed_m_s);
+  // The first estimates of a velocity are rough.
+  if (!(fastest_m_s > settings_.obstacle_speed_m_s)) {
+    fast_since_.reset();
+  } else if (!fast_since_) {
+    fast_since_ = now_;
+  }
+  Find(SafetyCheck::kObstacleTooFast, Reaction::kBrake,
+       fast_since_ && now_ - *fast_since_ >= HorizonOffset(settings_.too_fast_s), fastest_m_s,
+       settings_.obstacle_speed_m_s);
 }
 
 void Supervisor::JudgeRobot(const Measured& measured) {
@@ -144,7 +155,10 @@ void Supervisor::JudgeRobot(const Measured& measured) {
        settings_.torque_share);
   const bool loses = measured.success_rate < settings_.success_rate ||
                      measured.lost_in_a_row > settings_.lost_in_a_row;
-  Find(SafetyCheck::kLink, Reaction::kHold, loses, measured.success_rate, settings_.success_rate);
+  const bool in_a_row = measured.lost_in_a_row > settings_.lost_in_a_row;
+  Find(SafetyCheck::kLink, Reaction::kHold, loses,
+       in_a_row ? measured.lost_in_a_row : measured.success_rate,
+       in_a_row ? settings_.lost_in_a_row : settings_.success_rate);
   Find(SafetyCheck::kRobotMode, Reaction::kBrake, !measured.is_fit, 0, 0);
 }
 

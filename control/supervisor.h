@@ -85,6 +85,7 @@ class Supervisor {
   std::array<bool, kNumSafetyChecks> is_found_{};
   Reaction worst_ = Reaction::kNone;  // of this tick
   double pushed_s_ = 0;
+  std::optional<EpisodeTime> fast_since_;
   int rearmed_ = 0;
   bool is_braked_ = false;
   std::optional<EpisodeTime> held_until_;

@@ -93,8 +93,13 @@ PandaRobot::PandaRobot(std::unique_ptr<FciDriver> driver, const robot::RobotMode
                 control::TrackerLimits::Of(robot, kSpeedShare, kAccelerationShare, kJerkShare),
                 WithTorques(options.safety)),
       seen_(kLogLength) {
-  driver_->Configure(SettingsFor(robot));
   const RobotSnapshot state = driver_->ReadOnce();
+  if (state.mode != robot::fci::RobotMode::kIdle) {
+    throw FciError(FciError::Kind::kRefused,
+                   "the robot is not idle: it is stopped, held by hand, or in a reflex; see to the "
+                   "cause, then `sidestep hardware recover`");
+  }
+  driver_->Configure(SettingsFor(robot));
   latest_ = {EpisodeTime(0), VectorOf(state.q), VectorOf(state.dq)};
 }
 
@@ -120,7 +125,10 @@ void PandaRobot::AdvanceTo(EpisodeTime t) {
   constexpr double kTolerance = 1e-6;  // of a tick
   const auto tick =
       static_cast<std::int64_t>(std::ceil(t.seconds() * kTicksPerSecond - kTolerance));
-  if (!thread_.joinable()) thread_ = std::thread([this] { Run(); });
+  if (!thread_.joinable()) {
+    begin_ = std::chrono::steady_clock::now();
+    thread_ = std::thread([this] { Run(); });
+  }
   if (options_.lockstep && tick > allowed_ticks_) {
     allowed_ticks_ = tick;
     allowed_ticks_.notify_all();
@@ -129,6 +137,7 @@ void PandaRobot::AdvanceTo(EpisodeTime t) {
     if (has_ended_) Fail();
     std::this_thread::sleep_for(std::chrono::microseconds(options_.lockstep ? 20 : 200));
   }
+  CheckPace();
 }
 
 std::vector<ControlSample> PandaRobot::TakeControlLog() { return std::exchange(log_, {}); }
@@ -195,6 +204,16 @@ void PandaRobot::Collect() {
                               control::ToString(found.reaction), found.value, found.limit});
     if (found.reaction == control::Reaction::kBrake) why_ = control::Describe(found);
   });
+}
+
+// A server in lock-step answers as fast as it is answered.
+void PandaRobot::CheckPace() const {
+  constexpr double kTooFast = 1.5, kSlack_s = 0.5;
+  if (options_.lockstep) return;
+  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin_;
+  if (TimeOf(latest_tick_).seconds() < kTooFast * passed.count() + kSlack_s) return;
+  throw robot::RobotError(
+      "the robot's clock runs faster than real time: for a server in lock-step, --clock lockstep");
 }
 
 void PandaRobot::Fail() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <exception>
 #include <memory>
@@ -60,12 +61,14 @@ class PandaRobot final : public robot::RobotInterface {
   void Run();
   Command Answer(const RobotSnapshot& state, int elapsed_ms);
   void Collect();
+  void CheckPace() const;
   [[noreturn]] void Fail();
 
   std::unique_ptr<FciDriver> driver_;
   const PandaOptions options_;
   control::Follower follower_;
   std::thread thread_;
+  std::chrono::steady_clock::time_point begin_;
 
   // Between the thread that answers and the other.
   struct Seen {

@@ -159,7 +159,7 @@ std::vector<Fault> Faults() {
       {"AnObstacleLost", SafetyCheck::kObstacleLost, Reaction::kHold, 0.32, seen([](EpisodeTime t) {
          return ObstacleReport{t, {Ball({-2, 2, 1}, Vector3d::Zero(), EpisodeTime(1))}};
        })},
-      {"AnObstacleFasterThanDeclared", SafetyCheck::kObstacleTooFast, Reaction::kBrake, 0.02,
+      {"AnObstacleFasterThanDeclared", SafetyCheck::kObstacleTooFast, Reaction::kBrake, 0.12,
        seen([](EpisodeTime t) {
          return ObstacleReport{t, {Ball({-3, 3, 1}, {0, -0.6, 0}, t)}};
        })},
