@@ -35,7 +35,8 @@ void ArmCapsules::Place(const JointVector& q, All& placed) const noexcept {
   }
   for (std::size_t k = 0; k < static_cast<std::size_t>(size_); ++k) {
     const robot::CollisionCapsule& capsule = capsules_[k];
-    const auto frame = static_cast<std::size_t>(capsule.link + 1);
+    const int after_row = capsule.link + 1;
+    const auto frame = static_cast<std::size_t>(after_row);
     placed[k] = {p[frame] + R[frame] * capsule.p_LA, p[frame] + R[frame] * capsule.p_LB,
                  capsule.radius_m, capsule.link >= 0};
   }

@@ -86,15 +86,14 @@ Command Follower::Tick(const Measured& measured, HorizonOffset period) noexcept 
     target_.reset();
   }
 
+  // Once something has begun, only a stop leaves nothing to follow.
   robot::RobotMode mode = this->mode();
   if (reaction == Reaction::kBrake) {
     mode = robot::RobotMode::kFault;
-  } else if (reaction == Reaction::kHold) {
-    mode = robot::RobotMode::kHolding;
-  } else if (plan != nullptr) {
+  } else if (plan != nullptr && reaction == Reaction::kNone) {
     mode = robot::RobotMode::kMoving;
-  } else if (mode != robot::RobotMode::kReady) {
-    mode = robot::RobotMode::kHolding;  // once something has begun, only a stop leaves nothing
+  } else if (reaction == Reaction::kHold || mode != robot::RobotMode::kReady) {
+    mode = robot::RobotMode::kHolding;
   }
   mode_.store(mode, std::memory_order_relaxed);
   log_.Append({measured.t, measured.q, measured.v, measured.torque, command.motion});
