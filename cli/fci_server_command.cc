@@ -1,7 +1,6 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <csignal>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -12,6 +11,7 @@
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/number_range.h"
+#include "sidestep/cli/stop_signals.h"
 #include "sidestep/cli/wiring.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/number_text.h"
@@ -28,24 +28,6 @@ struct ServerCommand {
   std::string clock = "lockstep", scenario, faults;
   std::vector<std::string> settings;
   std::vector<double> q_start;
-};
-
-volatile std::sig_atomic_t interrupted = 0;
-
-// Ctrl-C and SIGTERM end the server, not what it is doing.
-class SignalGuard {
- public:
-  SignalGuard()
-      : interrupt_(std::signal(SIGINT, [](int) { interrupted = 1; })),
-        terminate_(std::signal(SIGTERM, [](int) { interrupted = 1; })) {}
-  ~SignalGuard() {
-    std::signal(SIGINT, interrupt_);
-    std::signal(SIGTERM, terminate_);
-  }
-
- private:
-  using Handler = void (*)(int);
-  Handler interrupt_, terminate_;
 };
 
 Eigen::VectorXd StartOf(const ServerCommand& options, const scenarios::Scenario& scenario,
@@ -149,8 +131,8 @@ int Serve(ServerCommand options) {
   Print("simulated Panda at {}, FCI version {}, {}; Ctrl-C ends it\n", options.server.address,
         faults.version, options.clock);
   FinishOutput();
-  const SignalGuard guard;
-  server->Run([] { return interrupted != 0; });
+  const StopSignals signals;
+  server->Run([&] { return signals.count() > 0; });
   judge.Conclude();
   return 0;
 }

@@ -6,22 +6,17 @@
 #include <thread>
 
 #include "sidestep/bench/episode.h"
-#include "sidestep/bench/result_file.h"
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/hardware_world.h"
 #include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/panda_connection.h"
-#include "sidestep/cli/provenance.h"
 #include "sidestep/cli/run_summary.h"
 #include "sidestep/cli/scenario_options.h"
 #include "sidestep/cli/stop_signals.h"
-#include "sidestep/cli/versions.h"
 #include "sidestep/cli/wiring.h"
-#include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/hardware/slow_move.h"
-#include "sidestep/record/recording_file.h"
 #include "sidestep/sim/safety_of.h"
 
 namespace sidestep::cli {
@@ -115,17 +110,7 @@ int RunOnHardware(HardwareOptions options) {
     return signals.count() > 0;
   };
   bench::EpisodeResult result = bench::RunEpisode(problem.scenario, problem.robot, worlds, episode);
-  const bench::RunIdentity identity = Identify(problem.scenario, paths);
-  AddProvenance(identity, result.recording);
-  record::WriteRecording(result.recording, out + "/trace.h5");
-  const std::string json = bench::ResultJson(result, problem.scenario, identity, Versions());
-  WriteFile(out + "/result.json", json);
-  if (options.json) {
-    PrintText(json);
-  } else {
-    PrintSummary(result, problem.scenario, out);
-  }
-  bench::RequireWhole(result);  // what there is has been written
+  KeepAndTell(result, problem.scenario, paths, out, options.json);
   return 0;
 }
 

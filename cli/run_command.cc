@@ -3,23 +3,18 @@
 #include <vector>
 
 #include "sidestep/bench/episode.h"
-#include "sidestep/bench/result_file.h"
 #include "sidestep/bench/statistics.h"
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/out_folder.h"
-#include "sidestep/cli/provenance.h"
 #include "sidestep/cli/run_summary.h"
 #include "sidestep/cli/scenario_options.h"
 #include "sidestep/cli/stop_signals.h"
 #include "sidestep/cli/thin_things.h"
-#include "sidestep/cli/versions.h"
 #include "sidestep/cli/wiring.h"
-#include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/number_text.h"
-#include "sidestep/record/recording_file.h"
 
 namespace sidestep::cli {
 namespace {
@@ -52,17 +47,7 @@ int Run(const RunOptions& options) {
   }
   bench::EpisodeResult result =
       bench::RunEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths), episode);
-  const bench::RunIdentity identity = Identify(problem.scenario, paths);
-  AddProvenance(identity, result.recording);
-  record::WriteRecording(result.recording, out + "/trace.h5");
-  const std::string json = bench::ResultJson(result, problem.scenario, identity, Versions());
-  WriteFile(out + "/result.json", json);
-  if (options.json) {
-    PrintText(json);
-  } else {
-    PrintSummary(result, problem.scenario, out);
-  }
-  bench::RequireWhole(result);  // what there is has been written
+  KeepAndTell(result, problem.scenario, paths, out, options.json);
   return 0;
 }
 

@@ -6,7 +6,11 @@
 #include "sidestep/bench/result_file.h"
 #include "sidestep/bench/statistics.h"
 #include "sidestep/cli/console.h"
+#include "sidestep/cli/provenance.h"
+#include "sidestep/cli/versions.h"
+#include "sidestep/core/atomic_file.h"
 #include "sidestep/core/number_text.h"
+#include "sidestep/record/recording_file.h"
 
 namespace sidestep::cli {
 namespace {
@@ -65,10 +69,20 @@ void PrintOutcome(const bench::EpisodeResult& result, const scenarios::Scenario&
   }
 }
 
-void PrintSummary(const bench::EpisodeResult& result, const scenarios::Scenario& scenario,
-                  const std::string& out) {
-  PrintOutcome(result, scenario);
-  Print("written          {}/result.json, {}/trace.h5\n", out, out);
+void KeepAndTell(bench::EpisodeResult& result, const scenarios::Scenario& scenario,
+                 const DataPaths& paths, const std::string& out, bool as_json) {
+  const bench::RunIdentity identity = Identify(scenario, paths);
+  AddProvenance(identity, result.recording);
+  record::WriteRecording(result.recording, out + "/trace.h5");
+  const std::string json = bench::ResultJson(result, scenario, identity, Versions());
+  WriteFile(out + "/result.json", json);
+  if (as_json) {
+    PrintText(json);
+  } else {
+    PrintOutcome(result, scenario);
+    Print("written          {}/result.json, {}/trace.h5\n", out, out);
+  }
+  bench::RequireWhole(result);  // what there is has been written
 }
 
 }  // namespace sidestep::cli
