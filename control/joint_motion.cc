@@ -6,9 +6,9 @@
 namespace sidestep::control {
 namespace {
 
-// The deceleration d of the next tick after which the speed v >= 0, with the deceleration taken
-// back by jerk h each tick, ends at zero together with it. With h the tick, J the jerk and n the
-// number of ticks in which the joint still moves, the decelerations are d, d - J h, ..., so
+// A landing: the speed v >= 0 ends at zero together with its deceleration, which is taken back by
+// jerk h each tick. With h the tick, J the jerk, d the first deceleration and n the number of ticks
+// in which the joint still moves, the decelerations are d, d - J h, ..., so
 //   v = h (n d - J h n (n - 1) / 2),   (n - 1) J h < d <= n J h,
 // and n is the whole number with J h^2 n (n - 1) / 2 < v <= J h^2 n (n + 1) / 2.
 double LandingTicks(double v, double jerk, double h) {
