@@ -48,8 +48,10 @@ constexpr const char* kStages[] = {"sense", "map", "segment", "track", "predict"
 std::string WhyNoPlan(const record::Recording& recording) {
   if (recording.observations.empty()) return "no scan has arrived";
   if (recording.cycles.empty()) return "no planning cycle was due after the first scan";
+  const CycleRecord& last = recording.cycles.back();
   return "none of " + std::to_string(recording.cycles.size()) +
-         " plans was accepted; the last one: " + recording.cycles.back().status;
+         " plans was accepted; the last one: " + last.status +
+         (last.reason.empty() ? "" : ", " + last.reason);
 }
 
 // Whatever happens, a robot is not left moving.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "sidestep/bench/planner_settings.h"
 #include "sidestep/bench/true_world.h"
@@ -41,14 +42,14 @@ FreePath SearchFreePath(const scenarios::Scenario& scenario, const robot::RobotM
       request.initial = planner::MakeDetour(request, random);
     }
     ++best.guesses;
-    const planner::PlanResult plan = planner->Plan(request);
-    const EpisodeTime begin(0), end(plan.trajectory.t_s(request.num_states - 1) + kAfterGoal_s);
+    const std::optional<Trajectory> motion = planner->Plan(request).trajectory;
+    if (!motion) continue;
+    const EpisodeTime begin(0), end(motion->t_s(request.num_states - 1) + kAfterGoal_s);
     const double clearance_m =
-        planner::MeasureClearance(robot, field, plan.trajectory, begin, begin, end, kJudgeStep_s)
-            .least_m;
+        planner::MeasureClearance(robot, field, *motion, begin, begin, end, kJudgeStep_s).least_m;
     if (clearance_m <= best.clearance_m) continue;
     best.clearance_m = clearance_m;
-    best.trajectory = plan.trajectory;
+    best.trajectory = *motion;
     best.found = clearance_m > 0;
   }
   return best;

@@ -52,6 +52,7 @@ struct CycleRecord {
   EpisodeTime t;                     ///< when the world was observed
   EpisodeTime t_effect;              ///< when its plan took (or would have taken) effect
   std::string status;                ///< of the planner
+  std::string reason;                ///< why there is no plan; else empty
   bool accepted = false;             ///< whether the plan was given to the robot
   int iterations = 0;                ///< of the optimiser
   double cost = 0;                   ///< final, of the whole objective

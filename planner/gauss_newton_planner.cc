@@ -1,5 +1,8 @@
 #include "sidestep/planner/gauss_newton_planner.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "sidestep/planner/first_guess.h"
 #include "sidestep/planner/gauss_newton.h"
 
@@ -9,7 +12,7 @@ GaussNewtonPlanner::GaussNewtonPlanner(const robot::RobotModel& robot,
                                        const PlannerSettings& settings)
     : Planner(robot, settings) {}
 
-PlanResult GaussNewtonPlanner::DoPlan(const PlanRequest& request) const {
+PlanAnswer GaussNewtonPlanner::DoPlan(const PlanRequest& request, PlanJudge&) const {
   const Trajectory guess =
       request.initial ? MakeWarmStart(request) : MakeDirectMotion(request, Timing::kWholeTime);
   GaussNewtonOptions options;
@@ -17,7 +20,7 @@ PlanResult GaussNewtonPlanner::DoPlan(const PlanRequest& request) const {
   options.sigma_obs = settings().sigma_obs;
   options.num_interpolated = settings().num_interpolated;
   options.qc = settings().qc;
-  options.max_iterations = settings().max_iterations;
+  options.max_iterations = std::min(settings().max_iterations, request.budget.iterations);
   options.relative_decrease = settings().function_tolerance;
 
   // States before the last fixed one decide nothing.
@@ -36,10 +39,10 @@ PlanResult GaussNewtonPlanner::DoPlan(const PlanRequest& request) const {
   Trajectory found = guess;  // whose fixed states stay to the bit
   found.q.rightCols(num_solved - 1) = problem.GetTrajectory().q.rightCols(num_solved - 1);
   found.v.rightCols(num_solved - 1) = problem.GetTrajectory().v.rightCols(num_solved - 1);
-  PlanResult result = MakeResult(request, found, summary.converged);
-  result.iterations = summary.iterations();
-  result.cost = problem.ComputeCost();
-  return result;
+  return {.trajectory = std::move(found),
+          .converged = summary.converged,
+          .iterations = summary.iterations(),
+          .cost = problem.ComputeCost()};
 }
 
 std::unique_ptr<Planner> MakeGaussNewtonPlanner(const robot::RobotModel& robot,

@@ -22,7 +22,7 @@ class GaussNewtonPlanner final : public Planner {
   }
 
  private:
-  PlanResult DoPlan(const PlanRequest& request) const override;
+  PlanAnswer DoPlan(const PlanRequest& request, PlanJudge& judge) const override;
 };
 
 std::unique_ptr<Planner> MakeGaussNewtonPlanner(const robot::RobotModel& robot,

@@ -35,8 +35,21 @@ struct SolveOutcome {
   bool converged = false;
 };
 
+// Ends a solve, with the best so far, where a budget of another kind than iterations is spent.
+class BudgetWatch final : public ceres::IterationCallback {
+ public:
+  explicit BudgetWatch(const PlanBudget& budget) : budget_(budget) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
+    return budget_.IsSpent(0) ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const PlanBudget& budget_;
+};
+
 SolveOutcome SolveByLevenbergMarquardt(ceres::Problem& problem, int max_iterations,
-                                       double function_tolerance) {
+                                       double function_tolerance, const PlanBudget& budget) {
+  BudgetWatch watch(budget);
   ceres::Solver::Options options;
   options.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
@@ -46,6 +59,7 @@ SolveOutcome SolveByLevenbergMarquardt(ceres::Problem& problem, int max_iteratio
   options.max_num_iterations = max_iterations;
   options.function_tolerance = function_tolerance;
   options.logging_type = ceres::SILENT;
+  options.callbacks = {&watch};
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   return {static_cast<int>(summary.iterations.size()) - 1,
@@ -61,8 +75,9 @@ EpisodeTime FirstFreeTime(const PlanRequest& request) {
 GpPlanner::GpPlanner(const robot::RobotModel& robot, const PlannerSettings& settings)
     : Planner(robot, settings) {}
 
-PlanResult GpPlanner::Solve(const PlanRequest& request, const Trajectory& guess, Stages stages,
-                            const Clearance* to_beat) const {
+GpPlanner::Candidate GpPlanner::Solve(const PlanRequest& request, PlanJudge& judge,
+                                      const Trajectory& guess, Stages stages, int iterations_done,
+                                      const Clearance* to_beat) const {
   GpProblemOptions options;
   options.epsilon_m = settings().epsilon_m;
   options.sigma_obs = settings().sigma_obs;
@@ -77,72 +92,77 @@ PlanResult GpPlanner::Solve(const PlanRequest& request, const Trajectory& guess,
   if (settings().acceleration_limits) limits.acceleration = kAccelerationWeight;
 
   GpProblem problem(robot(), request, guess, options);
-  int iterations = 0;
+  PlanAnswer answer;
   const int max_iterations =
       to_beat ? std::min(kTrialIterations, settings().max_iterations) : settings().max_iterations;
   const auto solve = [&](double function_tolerance) {
-    const SolveOutcome outcome =
-        SolveByLevenbergMarquardt(problem.problem(), max_iterations, function_tolerance);
-    iterations += outcome.iterations;
+    const int left = request.budget.iterations - iterations_done - answer.iterations;
+    if (left <= 0) return false;
+    const SolveOutcome outcome = SolveByLevenbergMarquardt(
+        problem.problem(), std::min(max_iterations, left), function_tolerance, request.budget);
+    answer.iterations += outcome.iterations;
     return outcome.converged;
+  };
+  const auto judged = [&] {
+    answer.trajectory = problem.GetTrajectory();
+    return Candidate{answer, judge.Judge(*answer.trajectory)};
   };
   if (stages != Stages::kWithLimits) solve(kColdTolerance);
   if (to_beat) {
-    PlanResult result = MakeResult(request, problem.GetTrajectory(), /*converged=*/false);
-    result.iterations = iterations;
-    if (result.clearance.first_contact && !IsSafer(result.clearance, *to_beat)) return result;
+    const Candidate first = judged();
+    if (!first.verdict.is_free() && !IsSafer(first.verdict.clearance, *to_beat)) return first;
   }
   problem.AddLimits(limits, settings().velocity_scale, settings().acceleration_scale);
-  const bool converged = solve(settings().function_tolerance);
-
-  PlanResult result = MakeResult(request, problem.GetTrajectory(), converged);
-  result.iterations = iterations;
-  result.cost = problem.ComputeCost();
-  return result;
+  answer.converged = solve(settings().function_tolerance);
+  answer.cost = problem.ComputeCost();
+  return judged();
 }
 
-bool GpPlanner::IsWithinLimits(const PlanResult& plan) const {
-  return (!settings().position_limits || plan.limit_use.position <= 1) &&
-         (!settings().velocity_limits || plan.limit_use.velocity <= 1) &&
-         (!settings().acceleration_limits || plan.limit_use.acceleration <= 1);
+bool GpPlanner::IsWithinLimits(const Verdict& verdict) const {
+  const LimitUse& use = verdict.limit_use;
+  return (!settings().position_limits || use.position <= 1) &&
+         (!settings().velocity_limits || use.velocity <= 1) &&
+         (!settings().acceleration_limits || use.acceleration <= 1);
 }
 
-bool GpPlanner::IsBetter(const PlanResult& a, const PlanResult& b) const {
-  const auto rank = [this](const PlanResult& plan) {
-    return plan.clearance.first_contact ? 0 : IsWithinLimits(plan) ? 2 : 1;
+bool GpPlanner::IsBetter(const Verdict& a, const Verdict& b) const {
+  const auto rank = [this](const Verdict& verdict) {
+    return !verdict.is_free() ? 0 : IsWithinLimits(verdict) ? 2 : 1;
   };
   if (rank(a) != rank(b)) return rank(a) > rank(b);
   return IsSafer(a.clearance, b.clearance);
 }
 
-PlanResult GpPlanner::DoPlan(const PlanRequest& request) const {
+PlanAnswer GpPlanner::DoPlan(const PlanRequest& request, PlanJudge& judge) const {
   std::vector<Timing> timings = {Timing::kWholeTime, Timing::kLeaveLate, Timing::kArriveEarly};
-  PlanResult best;
+  Candidate best;
   if (request.initial) {
-    best = Solve(request, MakeWarmStart(request), Stages::kWithLimits);
+    best = Solve(request, judge, MakeWarmStart(request), Stages::kWithLimits, 0);
   } else {
-    best = Solve(request, MakeDirectMotion(request, timings.front()), Stages::kBoth);
+    best = Solve(request, judge, MakeDirectMotion(request, timings.front()), Stages::kBoth, 0);
     timings.erase(timings.begin());
   }
-  int iterations = best.iterations;
+  int iterations = best.answer.iterations;
   const auto attempt = [&](const Trajectory& guess) {
-    PlanResult other = Solve(request, guess, Stages::kBoth, &best.clearance);
-    iterations += other.iterations;
-    if (IsBetter(other, best)) best = std::move(other);
+    if (request.budget.IsSpent(iterations)) return;
+    Candidate other =
+        Solve(request, judge, guess, Stages::kBoth, iterations, &best.verdict.clearance);
+    iterations += other.answer.iterations;
+    if (IsBetter(other.verdict, best.verdict)) best = std::move(other);
   };
   for (const Timing timing : timings) {
-    if (!best.clearance.first_contact && (request.initial || IsWithinLimits(best))) break;
+    if (best.verdict.is_free() && (request.initial || IsWithinLimits(best.verdict))) break;
     attempt(MakeDirectMotion(request, timing));
   }
   // A warm start has less time for one. Other ones a cycle later: who waits without a way out tries
   // more and more of them.
   const int num_detours = request.initial ? 0 : settings().num_detours;
   RandomStream random(std::bit_cast<std::uint64_t>(FirstFreeTime(request).seconds()), "detours");
-  for (int i = 0; i < num_detours && best.clearance.first_contact; ++i) {
+  for (int i = 0; i < num_detours && !best.verdict.is_free(); ++i) {
     attempt(MakeDetour(request, random));
   }
-  best.iterations = iterations;
-  return best;
+  best.answer.iterations = iterations;
+  return std::move(best.answer);
 }
 
 std::unique_ptr<Planner> MakeGpPlanner(const robot::RobotModel& robot,

@@ -31,18 +31,23 @@ class GpPlanner final : public Planner {
   }
 
  private:
-  PlanResult DoPlan(const PlanRequest& request) const override;
+  PlanAnswer DoPlan(const PlanRequest& request, PlanJudge& judge) const override;
   enum class Stages {
     kWithLimits,  ///< for a warm start
     kBoth         ///< for a cold one
   };
-  /// With `to_beat` it is a trial, for one of many seeds: few iterations, and it gives up after the
-  /// first stage if that touches something and is not safer.
-  PlanResult Solve(const PlanRequest& request, const Trajectory& guess, Stages stages,
-                   const Clearance* to_beat = nullptr) const;
-  bool IsWithinLimits(const PlanResult& plan) const;  // the robot's own, unscaled
+  struct Candidate {
+    PlanAnswer answer;
+    Verdict verdict;
+  };
+  /// At most the budget's iterations less `iterations_done`. With `to_beat` it is a trial, for one
+  /// of many seeds: few iterations, and it gives up after the first stage if that touches something
+  /// and is not safer.
+  Candidate Solve(const PlanRequest& request, PlanJudge& judge, const Trajectory& guess,
+                  Stages stages, int iterations_done, const Clearance* to_beat = nullptr) const;
+  bool IsWithinLimits(const Verdict& verdict) const;  // the robot's own, unscaled
   /// Free within limits comes before free, free before not free; then what is safer.
-  bool IsBetter(const PlanResult& a, const PlanResult& b) const;
+  bool IsBetter(const Verdict& a, const Verdict& b) const;
 };
 
 std::unique_ptr<Planner> MakeGpPlanner(const robot::RobotModel& robot,

@@ -65,10 +65,6 @@ TrajectoryPoint RestAt(const Eigen::VectorXd& q) {
 
 bool IsMoving(const JointState& state) { return state.v.cwiseAbs().maxCoeff() > kStill_rad_s; }
 
-bool IsFinite(const Trajectory& trajectory) {
-  return trajectory.q.allFinite() && trajectory.v.allFinite();
-}
-
 // One cycle at work: the task and what is derived from it.
 class CycleWork {
  public:
@@ -135,34 +131,40 @@ CycleResult CycleWork::Run() const {
     const EpisodeTime until = StayUntil();
     if (until <= t_effect_ || measure(present, until).first_contact) return false;
     const TrajectoryPoint there = Sample(present.trajectory, until - present.start);
-    return !plan(NewHorizon(until, there.q, there.v)).clearance.first_contact;
+    const PlanResult way_out = plan(NewHorizon(until, there.q, there.v));
+    return way_out.trajectory && !way_out.clearance.first_contact;
   };
   const auto request = MakeRequest();
   if (request && !may_stay()) {
+    bool is_new = false;
     const auto show = [&](PlanResult result, EpisodeTime start) {
       record.status = ToString(result.status);
+      record.reason = result.reason;
       record.cost = result.cost.total();
-      clearance = result.clearance;
-      shown = {std::move(result.trajectory), start};
+      is_new = result.trajectory.has_value();
+      if (is_new) shown = {*std::move(result.trajectory), start};
+      clearance = is_new ? result.clearance : measure(present, EndOf(present));
     };
     show(plan(*request), request->start);
     if (clearance.first_contact && running_) {
       if (request->start < t_effect_) {
         PlanResult result = plan(NewHorizon(t_effect_, expected_.q, expected_.v));
-        if (IsSafer(result.clearance, clearance)) show(std::move(result), t_effect_);
+        if (result.trajectory && IsSafer(result.clearance, clearance)) {
+          show(std::move(result), t_effect_);
+        }
       }
       TimedPlan brake = Brake();
       const Clearance braking = measure(brake, EndOf(brake));
       if (clearance.first_contact && IsSafer(braking, clearance) &&
           measure(present, EndOf(brake)).first_contact) {
         record.status = kBraked;
+        is_new = true;
         clearance = braking;
         shown = std::move(brake);
       }
     }
     record.accepted =
-        IsFinite(shown.trajectory) &&
-        (!clearance.first_contact || IsSafer(clearance, measure(present, EndOf(shown))));
+        is_new && (!clearance.first_contact || IsSafer(clearance, measure(present, EndOf(shown))));
   } else {
     record.status = "kept";
     clearance = measure(present, EndOf(present));

@@ -46,8 +46,8 @@ struct CycleResult {
   std::optional<TimedPlan> plan;
   bool is_braking = false;  ///< of `plan`
   /// Its status is that of the planner, "braked", or "kept" if nothing was planned; its plan is
-  /// the one found or kept, with that one's clearance from the moment of effect on. Its objects are
-  /// left to whoever made the field.
+  /// the one found, or else the one kept, with that one's clearance from the moment of effect on.
+  /// Its objects are left to whoever made the field.
   CycleRecord record;
   double optimise_s = 0;  ///< CPU seconds of this thread, for the report only
 };

@@ -4,8 +4,8 @@
 
 namespace sidestep::planner {
 
-PlanResult StraightLinePlanner::DoPlan(const PlanRequest& request) const {
-  return MakeResult(request, MakeDirectMotion(request, Timing::kWholeTime), /*converged=*/true);
+PlanAnswer StraightLinePlanner::DoPlan(const PlanRequest& request, PlanJudge&) const {
+  return {.trajectory = MakeDirectMotion(request, Timing::kWholeTime), .converged = true};
 }
 
 std::unique_ptr<Planner> MakeStraightLinePlanner(const robot::RobotModel& robot,

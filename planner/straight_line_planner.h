@@ -17,7 +17,7 @@ class StraightLinePlanner final : public Planner {
   PlannerCapabilities capabilities() const override { return {.reaches_goal = true}; }
 
  private:
-  PlanResult DoPlan(const PlanRequest& request) const override;
+  PlanAnswer DoPlan(const PlanRequest& request, PlanJudge& judge) const override;
 };
 
 std::unique_ptr<Planner> MakeStraightLinePlanner(const robot::RobotModel& robot,

@@ -240,6 +240,7 @@ void WriteCycles(Hdf5ImageWriter& file, const Recording& recording) {
   file.Write("cycles/t_effect", Column(cycles, [](const auto& c) { return c.t_effect.seconds(); }),
              "s");
   file.Write("cycles/status", StringColumn(cycles, [](const auto& c) { return c.status; }));
+  file.Write("cycles/reason", StringColumn(cycles, [](const auto& c) { return c.reason; }));
   file.Write("cycles/accepted", IntegerColumn(cycles, [](const auto& c) { return c.accepted; }));
   file.Write("cycles/iterations",
              IntegerColumn(cycles, [](const auto& c) { return c.iterations; }));
@@ -522,6 +523,7 @@ void ReadCycles(const Hdf5ImageReader& file, Recording* recording) {
   const hsize_t num_rows = t.values.size();
   const Doubles t_effect = ReadTimes(file, "cycles/t_effect", num_rows);
   const Strings status = file.ReadStrings("cycles/status", {num_rows});
+  const Strings reason = file.ReadStrings("cycles/reason", {num_rows});
   const Integers accepted = file.ReadIntegers("cycles/accepted", {num_rows});
   const Integers iterations = file.ReadIntegers("cycles/iterations", {num_rows});
   const Doubles cost = file.ReadDoubles("cycles/cost", {num_rows});
@@ -534,6 +536,7 @@ void ReadCycles(const Hdf5ImageReader& file, Recording* recording) {
     cycle.t = EpisodeTime(t.values[i]);
     cycle.t_effect = EpisodeTime(t_effect.values[i]);
     cycle.status = status.values[i];
+    cycle.reason = reason.values[i];
     cycle.accepted = accepted.values[i] != 0;
     cycle.iterations = static_cast<int>(iterations.values[i]);
     cycle.cost = cost.values[i];

@@ -14,7 +14,7 @@ class HoldStillPlanner final : public Planner {
       : Planner(robot, settings) {}
 
  private:
-  PlanResult DoPlan(const PlanRequest& request) const override {
+  PlanAnswer DoPlan(const PlanRequest& request, PlanJudge&) const override {
     const int n = robot().num_joints(), num_states = request.num_states;
     Trajectory trajectory;
     trajectory.t_s = Eigen::VectorXd::LinSpaced(num_states, 0, num_states - 1) * request.step_s;
@@ -27,7 +27,7 @@ class HoldStillPlanner final : public Planner {
       trajectory.q.leftCols(last) = request.initial->q.leftCols(last);
       trajectory.v.leftCols(last + 1) = request.initial->v.leftCols(last + 1);
     }
-    return MakeResult(request, trajectory, /*converged=*/true);
+    return {.trajectory = trajectory, .converged = true};
   }
 };
 

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <functional>
 #include <limits>
 #include <string>
@@ -60,10 +63,10 @@ class EveryPlanner : public ::testing::TestWithParam<std::string> {
 
 TEST_P(EveryPlanner, AnswersOnTheRequestsGridWithFiniteNumbers) {
   const PlanResult result = Plan(Request());
-  ASSERT_NO_THROW(CheckTrajectory(result.trajectory));
-  EXPECT_EQ(result.trajectory.num_joints(), 2);
-  ASSERT_EQ(result.trajectory.num_states(), 21);
-  for (int k = 0; k < 21; ++k) EXPECT_NEAR(result.trajectory.t_s(k), 0.1 * k, 1e-12);
+  ASSERT_NO_THROW(CheckTrajectory(result.trajectory.value()));
+  EXPECT_EQ(result.trajectory->num_joints(), 2);
+  ASSERT_EQ(result.trajectory->num_states(), 21);
+  for (int k = 0; k < 21; ++k) EXPECT_NEAR(result.trajectory->t_s(k), 0.1 * k, 1e-12);
   EXPECT_TRUE(std::isfinite(result.cost.total()));
   EXPECT_TRUE(std::isfinite(result.clearance.least_m));
 }
@@ -71,15 +74,15 @@ TEST_P(EveryPlanner, AnswersOnTheRequestsGridWithFiniteNumbers) {
 TEST_P(EveryPlanner, StartsWhereItIsToldToTheBit) {
   const PlanRequest request = Request();
   const PlanResult result = Plan(request);
-  EXPECT_EQ(result.trajectory.q.col(0), request.q_start);
-  EXPECT_EQ(result.trajectory.v.col(0), request.v_start);
+  EXPECT_EQ(result.trajectory->q.col(0), request.q_start);
+  EXPECT_EQ(result.trajectory->v.col(0), request.v_start);
 }
 
 TEST_P(EveryPlanner, KeepsFixedStatesToTheBit) {
   const PlanRequest request = RequestWithFixedStates();
   const PlanResult result = Plan(request);
-  EXPECT_EQ(result.trajectory.q.leftCols(8), request.initial->q.leftCols(8));
-  EXPECT_EQ(result.trajectory.v.leftCols(8), request.initial->v.leftCols(8));
+  EXPECT_EQ(result.trajectory->q.leftCols(8), request.initial->q.leftCols(8));
+  EXPECT_EQ(result.trajectory->v.leftCols(8), request.initial->v.leftCols(8));
 }
 
 TEST_P(EveryPlanner, RestsThroughFixedStatesWithoutAGuess) {
@@ -88,16 +91,16 @@ TEST_P(EveryPlanner, RestsThroughFixedStatesWithoutAGuess) {
   request.num_fixed = 4;
   const PlanResult result = Plan(request);
   for (int k = 0; k < 4; ++k) {
-    EXPECT_EQ(result.trajectory.q.col(k), request.q_start);
-    EXPECT_EQ(result.trajectory.v.col(k), Eigen::Vector2d::Zero());
+    EXPECT_EQ(result.trajectory->q.col(k), request.q_start);
+    EXPECT_EQ(result.trajectory->v.col(k), Eigen::Vector2d::Zero());
   }
 }
 
 TEST_P(EveryPlanner, RepeatsItselfBitForBit) {
   for (const PlanRequest& request : {Request(), RequestWithFixedStates()}) {
     const PlanResult first = Plan(request), second = Plan(request);
-    EXPECT_EQ(first.trajectory.q, second.trajectory.q);
-    EXPECT_EQ(first.trajectory.v, second.trajectory.v);
+    EXPECT_EQ(first.trajectory->q, second.trajectory->q);
+    EXPECT_EQ(first.trajectory->v, second.trajectory->v);
     EXPECT_EQ(first.iterations, second.iterations);
     EXPECT_EQ(first.cost.total(), second.cost.total());
     EXPECT_EQ(first.clearance.least_m, second.clearance.least_m);
@@ -114,10 +117,10 @@ TEST_P(EveryPlanner, SaysOfItsPlanWhatIsTrueOfItInTheField) {
       request.field = field;
       const PlanResult result = Plan(request);
       const auto time_of = [&](int k) {
-        return request.start + HorizonOffset(result.trajectory.t_s(k));
+        return request.start + HorizonOffset(result.trajectory->t_s(k));
       };
       const Clearance truth =
-          MeasureClearance(arm_, *field, result.trajectory, request.start,
+          MeasureClearance(arm_, *field, *result.trajectory, request.start,
                            time_of(request.num_fixed - 1), time_of(request.num_states - 1));
       EXPECT_EQ(result.clearance.least_m, truth.least_m);
       EXPECT_EQ(result.clearance.first_contact, truth.first_contact);
@@ -126,6 +129,23 @@ TEST_P(EveryPlanner, SaysOfItsPlanWhatIsTrueOfItInTheField) {
         EXPECT_EQ(result.status, PlanStatus::kInCollision);
       }
     }
+  }
+}
+
+TEST_P(EveryPlanner, KeepsToItsBudget) {
+  for (PlanRequest request : {Request(), RequestWithFixedStates()}) {
+    for (const int iterations : {1, 2, 7}) {
+      request.budget.iterations = iterations;
+      EXPECT_LE(Plan(request).iterations, iterations);
+    }
+    request.budget.iterations = std::numeric_limits<int>::max();
+    const int all = Plan(request).iterations;
+    std::atomic<bool> stop = true;
+    request.budget.stop = &stop;
+    EXPECT_LE(Plan(request).iterations, std::min(all, 2));
+    request.budget.stop = nullptr;
+    request.budget.deadline = std::chrono::steady_clock::now();
+    EXPECT_LE(Plan(request).iterations, std::min(all, 2));
   }
 }
 
@@ -181,6 +201,7 @@ TEST_P(EveryPlanner, RefusesRequestsThatMeanNothing) {
       [](PlanRequest& r) { r.v_start.resize(0); },
       [](PlanRequest& r) { r.q_goal(0) = std::numeric_limits<double>::infinity(); },
       [](PlanRequest& r) { r.num_fixed = 0; },
+      [](PlanRequest& r) { r.budget.iterations = 0; },
       [](PlanRequest& r) { r.num_fixed = 21; },
       [](PlanRequest& r) { r.v_start(0) += 1e-9; },  // is not where the fixed states begin
       [](PlanRequest& r) { r.initial.reset(); },     // fixed states at rest, but it moves
@@ -214,14 +235,14 @@ class PlannerThatReachesTheGoal : public EveryPlanner {};
 TEST_P(PlannerThatReachesTheGoal, EndsThereAtRest) {
   for (const PlanRequest& request : {Request(), RequestWithFixedStates()}) {
     const PlanResult result = Plan(request);
-    EXPECT_LT((result.trajectory.q.col(20) - request.q_goal).cwiseAbs().maxCoeff(), 1e-3);
-    EXPECT_LT(result.trajectory.v.col(20).cwiseAbs().maxCoeff(), 1e-3);
+    EXPECT_LT((result.trajectory->q.col(20) - request.q_goal).cwiseAbs().maxCoeff(), 1e-3);
+    EXPECT_LT(result.trajectory->v.col(20).cwiseAbs().maxCoeff(), 1e-3);
   }
 }
 
 TEST_P(PlannerThatReachesTheGoal, ChoosesTheStatesThatAreNotFixed) {
   const PlanRequest request = RequestWithFixedStates();
-  EXPECT_NE(Plan(request).trajectory.q.col(8), request.initial->q.col(8));
+  EXPECT_NE(Plan(request).trajectory->q.col(8), request.initial->q.col(8));
 }
 
 TEST_P(PlannerThatReachesTheGoal, CollidesWithWhatSitsOnIt) {

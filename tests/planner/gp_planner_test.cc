@@ -40,7 +40,7 @@ TEST_F(GpPlannerTest, TakesTheCubicToTheGoalWhereNothingIsInTheWay) {
   const PlanResult result = GpPlanner(arm_, {}).Plan(request);
   const Trajectory cubic = MakeDirectMotion(request, Timing::kWholeTime);
   EXPECT_EQ(result.status, PlanStatus::kSolved);
-  EXPECT_LT((result.trajectory.q - cubic.q).cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_LT((result.trajectory->q - cubic.q).cwiseAbs().maxCoeff(), 1e-6);
   EXPECT_NEAR(result.cost.gp, ComputeGpCost(cubic, 1), 1e-6 * result.cost.gp);
   EXPECT_EQ(result.cost.obstacle, 0);
 }
@@ -51,9 +51,10 @@ TEST_F(GpPlannerTest, FindsTheCubicFromAnyGuess) {
   PlannerSettings settings = WithoutLimits();
   settings.function_tolerance = 1e-12;
   const PlanResult result = GpPlanner(arm_, settings).Plan(request);
-  EXPECT_LT(
-      (result.trajectory.q - MakeDirectMotion(request, Timing::kWholeTime).q).cwiseAbs().maxCoeff(),
-      1e-5);
+  EXPECT_LT((result.trajectory->q - MakeDirectMotion(request, Timing::kWholeTime).q)
+                .cwiseAbs()
+                .maxCoeff(),
+            1e-5);
 }
 
 TEST_F(GpPlannerTest, BendsAroundABallThatTheDirectMotionHits) {
@@ -92,9 +93,10 @@ TEST_F(GpPlannerTest, MeetsAMovingBallNeitherWhereItWasNorWhereItWillBe) {
   const PlanRequest request = Request(ahead);
   const PlanResult result = GpPlanner(arm_, settings).Plan(request);
   EXPECT_EQ(result.status, PlanStatus::kSolved);
-  EXPECT_LT(
-      (result.trajectory.q - MakeDirectMotion(request, Timing::kWholeTime).q).cwiseAbs().maxCoeff(),
-      1e-6);
+  EXPECT_LT((result.trajectory->q - MakeDirectMotion(request, Timing::kWholeTime).q)
+                .cwiseAbs()
+                .maxCoeff(),
+            1e-6);
 }
 
 TEST_F(GpPlannerTest, KeepsWithinLimitsThatTheFreeOptimumBreaks) {
@@ -128,7 +130,7 @@ TEST_F(GpPlannerTest, AWarmStartFromItsOwnPlanChangesLittleAndCostsLittle) {
   const PlanResult warm = planner.Plan(request);
   EXPECT_LT(warm.iterations, cold.iterations);
   EXPECT_LE(warm.cost.total(), cold.cost.total() * (1 + 1e-9));
-  EXPECT_LT((warm.trajectory.q - cold.trajectory.q).cwiseAbs().maxCoeff(), 0.05);
+  EXPECT_LT((warm.trajectory->q - cold.trajectory->q).cwiseAbs().maxCoeff(), 0.05);
 }
 
 }  // namespace

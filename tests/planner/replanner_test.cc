@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sidestep/core/goal.h"
@@ -31,8 +32,10 @@ CycleResult RunAndAccept(Replanner& replanner, MovingBallWorld& world, const Joi
 class Loop {
  public:
   explicit Loop(MovingBallWorld& world, const std::string& planner = "gpmp", double dwell_s = 0)
+      : Loop(world, MakePlanner(planner, MakePlanarArm(), Settings()), dwell_s) {}
+  Loop(MovingBallWorld& world, std::unique_ptr<Planner> planner, double dwell_s = 0)
       : world_(world),
-        planner_(MakePlanner(planner, arm_, Settings())),
+        planner_(std::move(planner)),
         replanner_(*planner_, {.horizon_s = 3, .step_s = 0.1, .q_goal = kGoal}),
         goal_(kGoal, dwell_s) {}
 
@@ -145,6 +148,52 @@ TEST(Replanner, TheDirectMotionWouldHitTheBall) {  // or the tests above show no
   Loop loop(world, "straight_line");
   const CycleResult cycle = loop.Cycle(0, 0.1);
   EXPECT_EQ(cycle.record.status, "in_collision");
+}
+
+// Plans as gpmp does, until it is spoilt.
+class PlannerThatMayFail final : public Planner {
+ public:
+  PlannerThatMayFail() : Planner(MakePlanarArm(), Loop::Settings()) {}
+  bool fails = false;
+
+ private:
+  PlanAnswer DoPlan(const PlanRequest& request, PlanJudge&) const override {
+    if (fails) return {.why_none = "has no idea"};
+    return {.trajectory = MakePlanner("gpmp", robot(), settings())->Plan(request).trajectory,
+            .converged = true};
+  }
+};
+
+TEST(Replanner, GoesOnWithThePlanThatRunsIfThePlannerFindsNone) {
+  MovingBallWorld world = NothingThere();
+  auto mine = std::make_unique<PlannerThatMayFail>();
+  PlannerThatMayFail& planner = *mine;
+  Loop loop(world, std::move(mine));
+  ASSERT_TRUE(loop.Cycle(0, 0.1).plan);
+  planner.fails = true;
+  for (int i = 1; i < 10; ++i) {
+    const CycleResult cycle = loop.Cycle(0.1 * i, 0.1);
+    EXPECT_FALSE(cycle.plan);
+    EXPECT_EQ(cycle.record.status, "failed");
+    EXPECT_EQ(cycle.record.reason, "has no idea");
+    EXPECT_EQ(cycle.record.plan.q, loop.plan()->trajectory.q);
+  }
+  planner.fails = false;
+  EXPECT_EQ(loop.Cycle(1, 0.1).record.status, "solved");
+  EXPECT_EQ(loop.Cycle(1.1, 0.1).record.reason, "");
+}
+
+TEST(Replanner, BrakesBeforeWhatComesIfThePlannerFindsNone) {
+  MovingBallWorld world = NothingThere();
+  auto mine = std::make_unique<PlannerThatMayFail>();
+  PlannerThatMayFail& planner = *mine;
+  Loop loop(world, std::move(mine));
+  loop.Cycle(0, 0.1);
+  planner.fails = true;
+  world.Replace({0.95, 0, 0}, {0, 0, 0}, 0.1);  // in the middle of its way
+  EXPECT_EQ(loop.Cycle(0.3, 0.1).record.status, "braked");
+  for (int i = 4; i < 30; ++i) loop.Cycle(0.1 * i, 0.1);
+  EXPECT_GT(loop.min_clearance_m(), 0);
 }
 
 TEST(Replanner, RestsUntilTheFirstPlanTakesEffect) {

@@ -1,0 +1,175 @@
+// What the base class makes of what a planner answers.
+#include "sidestep/planner/planner.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sidestep/planner/first_guess.h"
+#include "tests/support/ball_field.h"
+#include "tests/support/planar_arm.h"
+
+namespace sidestep::planner {
+namespace {
+
+using Answer = std::function<PlanAnswer(const PlanRequest&, PlanJudge&)>;
+
+// Answers as it is told.
+class Puppet final : public Planner {
+ public:
+  explicit Puppet(Answer answer, const PlannerSettings& settings = {})
+      : Planner(MakePlanarArm(), settings), answer_(std::move(answer)) {}
+
+ private:
+  PlanAnswer DoPlan(const PlanRequest& request, PlanJudge& judge) const override {
+    return answer_(request, judge);
+  }
+  Answer answer_;
+};
+
+const BallField kNothing({100, 0, 0}, {0, 0, 0}, 0.1);
+const BallField kInTheWay({0.9, 0, 0}, {0, 0, 0}, 0.2);
+
+PlanRequest Request(const BallField& field = kNothing) {
+  PlanRequest request;
+  request.field = &field;
+  request.step_s = 0.1;
+  request.num_states = 21;
+  request.q_start = Eigen::Vector2d(-1.1, 0.3);
+  request.v_start = Eigen::Vector2d::Zero();
+  request.q_goal = Eigen::Vector2d(1.2, -0.2);
+  request.num_fixed = 3;
+  return request;
+}
+
+PlanAnswer Direct(const PlanRequest& request, PlanJudge&) {
+  return {.trajectory = MakeDirectMotion(request, sidestep::planner::Timing::kWholeTime),
+          .converged = true};
+}
+
+TEST(Planner, JudgesTheAnswerWhateverThePlannerThinksOfIt) {
+  struct Case {
+    const BallField& field;
+    double velocity_scale;
+    bool converged;
+    PlanStatus status;
+  };
+  // The direct motion takes 0.96 of the velocity limit.
+  for (const Case& c : {Case{kNothing, 1, true, PlanStatus::kSolved},
+                        Case{kNothing, 1, false, PlanStatus::kNotConverged},
+                        Case{kNothing, 0.5, true, PlanStatus::kOverLimits},
+                        Case{kInTheWay, 0.5, true, PlanStatus::kInCollision}}) {
+    PlannerSettings settings;
+    settings.velocity_scale = c.velocity_scale;
+    settings.acceleration_limits = false;
+    const Puppet puppet(
+        [&](const PlanRequest& request, PlanJudge& judge) {
+          PlanAnswer answer = Direct(request, judge);
+          answer.converged = c.converged;
+          return answer;
+        },
+        settings);
+    const PlanResult result = puppet.Plan(Request(c.field));
+    EXPECT_EQ(result.status, c.status) << ToString(result.status);
+    EXPECT_TRUE(result.trajectory);
+    EXPECT_EQ(result.reason, "");
+  }
+}
+
+TEST(Planner, TellsAPlannerOfAMotionWhatItWillSayOfTheAnswer) {
+  Verdict told;
+  const Puppet puppet([&](const PlanRequest& request, PlanJudge& judge) {
+    PlanAnswer answer = Direct(request, judge);
+    told = judge.Judge(*answer.trajectory);
+    return answer;
+  });
+  const PlanResult result = puppet.Plan(Request(kInTheWay));
+  EXPECT_FALSE(told.is_free());
+  EXPECT_EQ(result.clearance.least_m, told.clearance.least_m);
+  EXPECT_EQ(result.limit_use.velocity, told.limit_use.velocity);
+}
+
+// A trajectory that does not answer the request, and what is said of it.
+struct Broken {
+  std::string name;
+  std::function<void(Trajectory&)> spoil;
+  std::string reason;
+};
+void PrintTo(const Broken& broken, std::ostream* stream) { *stream << broken.name; }
+
+class PlannerThatBreaksAPromise : public ::testing::TestWithParam<Broken> {};
+
+TEST_P(PlannerThatBreaksAPromise, HasFailedAndItIsSaidWhy) {
+  const Puppet puppet([](const PlanRequest& request, PlanJudge& judge) {
+    PlanAnswer answer = Direct(request, judge);
+    GetParam().spoil(*answer.trajectory);
+    return answer;
+  });
+  const PlanResult result = puppet.Plan(Request());
+  EXPECT_EQ(result.status, PlanStatus::kFailed);
+  EXPECT_FALSE(result.trajectory);
+  EXPECT_NE(result.reason.find(GetParam().reason), std::string::npos) << result.reason;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Promises, PlannerThatBreaksAPromise,
+    ::testing::Values(
+        Broken{"NotFinite",
+               [](Trajectory& t) { t.q(0, 20) = std::numeric_limits<double>::quiet_NaN(); },
+               "finite"},
+        Broken{"AnotherGrid", [](Trajectory& t) { t.t_s *= 1.5; }, "grid"},
+        Broken{"TooShort",
+               [](Trajectory& t) {
+                 t = {t.t_s.head(20).eval(), t.q.leftCols(20).eval(), t.v.leftCols(20).eval()};
+               },
+               "grid"},
+        Broken{"TooManyJoints", [](Trajectory& t) { t.q = t.v = Eigen::MatrixXd::Zero(3, 21); },
+               "3 joints, not 2"},
+        Broken{"AnotherStart", [](Trajectory& t) { t.q(1, 0) += 1e-12; }, "state 0"},
+        Broken{"AnotherFixedState", [](Trajectory& t) { t.v(0, 2) = 1e-12; }, "state 2"},
+        Broken{"Empty", [](Trajectory& t) { t = {}; }, "K >= 1"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(Planner, HasFailedWithTheWordsOfWhatItThrows) {
+  const Puppet puppet([](const PlanRequest&, PlanJudge&) -> PlanAnswer {
+    throw std::runtime_error("the solver is not at home");
+  });
+  const PlanResult result = puppet.Plan(Request());
+  EXPECT_EQ(result.status, PlanStatus::kFailed);
+  EXPECT_EQ(result.reason, "the solver is not at home");
+}
+
+TEST(Planner, MayFindNothingAndSaysWhy) {
+  const Puppet silent([](const PlanRequest&, PlanJudge&) { return PlanAnswer{}; });
+  EXPECT_EQ(silent.Plan(Request()).status, PlanStatus::kFailed);
+  EXPECT_EQ(silent.Plan(Request()).reason, "found no plan");
+  const Puppet outspoken([](const PlanRequest&, PlanJudge&) {
+    return PlanAnswer{.iterations = 7, .why_none = "the goal is walled in"};
+  });
+  EXPECT_EQ(outspoken.Plan(Request()).reason, "the goal is walled in");
+  EXPECT_EQ(outspoken.Plan(Request()).iterations, 7);
+}
+
+TEST(Planner, HasTimedOutIfItsBudgetWasSpentWithoutAPlan) {
+  const Puppet puppet([](const PlanRequest&, PlanJudge&) { return PlanAnswer{.iterations = 7}; });
+  PlanRequest request = Request();
+  request.budget.iterations = 7;
+  EXPECT_EQ(puppet.Plan(request).status, PlanStatus::kTimedOut);
+  request.budget.iterations = 8;
+  EXPECT_EQ(puppet.Plan(request).status, PlanStatus::kFailed);
+  std::atomic<bool> stop = true;
+  request.budget.stop = &stop;
+  EXPECT_EQ(puppet.Plan(request).status, PlanStatus::kTimedOut);
+  stop = false;
+  request.budget.deadline = std::chrono::steady_clock::now();
+  EXPECT_EQ(puppet.Plan(request).status, PlanStatus::kTimedOut);
+}
+
+}  // namespace
+}  // namespace sidestep::planner
