@@ -15,14 +15,13 @@
 #include "sidestep/bench/episode_recorder.h"
 #include "sidestep/bench/latency.h"
 #include "sidestep/bench/metrics/registry.h"
-#include "sidestep/bench/planner_settings.h"
 #include "sidestep/bench/planning_worker.h"
 #include "sidestep/bench/safety_watch.h"
+#include "sidestep/bench/scenario_planner.h"
 #include "sidestep/bench/sensor_watch.h"
 #include "sidestep/bench/true_world.h"
 #include "sidestep/core/cpu_time.h"
 #include "sidestep/core/goal.h"
-#include "sidestep/planner/registry.h"
 #include "sidestep/planner/replanner.h"
 #include "sidestep/robot/robot_error.h"
 #include "sidestep/sdf/map/object_field.h"
@@ -75,17 +74,18 @@ class Loop {
         world_(world),
         sensors_(world.sensors.begin(), world.sensors.end()),
         options_(options),
-        planner_(planner::MakePlanner(scenario.planner, robot, MakePlannerSettings(scenario))),
+        planner_(MakePlanner(scenario, robot)),
         model_(sdf::MakeWorldModel(MakeWorldModelOptions(
             scenario, scenario.epsilon_m + robot.largest_sphere_radius_m(), world))),
-        replanner_(*planner_, {scenario.horizon_s, scenario.step_s, scenario.q_goal}),
+        horizon_s_(HorizonOf(scenario, *planner_)),
+        replanner_(*planner_, {horizon_s_, scenario.step_s, scenario.q_goal}),
         goal_(scenario.q_goal, scenario.dwell_s),
         latency_(scenario),
         clock_(options.clock == EpisodeClock::kWall ? MakeWallClock() : MakeVirtualClock()),
         is_real_time_(options.clock != EpisodeClock::kVirtual),
         worker_(is_real_time_ ? MakeThreadWorker() : MakeInlineWorker()),
         recorder_(scenario, robot, world),
-        end_s_(kHorizons * scenario.horizon_s) {
+        end_s_(kHorizons * horizon_s_) {
     if (scenario.safety.profile != scenarios::SafetyProfile::kOff) {
       safety_.emplace(scenario, world);
     }
@@ -340,6 +340,7 @@ class Loop {
   const EpisodeOptions& options_;
   std::unique_ptr<planner::Planner> planner_;
   std::unique_ptr<sdf::WorldModel> model_;
+  double horizon_s_;
   planner::Replanner replanner_;
   GoalWatch goal_;
   LatencyModel latency_;

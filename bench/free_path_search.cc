@@ -4,12 +4,11 @@
 #include <limits>
 #include <optional>
 
-#include "sidestep/bench/planner_settings.h"
+#include "sidestep/bench/scenario_planner.h"
 #include "sidestep/bench/true_world.h"
 #include "sidestep/core/random.h"
 #include "sidestep/planner/clearance.h"
 #include "sidestep/planner/first_guess.h"
-#include "sidestep/planner/registry.h"
 
 namespace sidestep::bench {
 namespace {
@@ -22,11 +21,12 @@ FreePath SearchFreePath(const scenarios::Scenario& scenario, const robot::RobotM
                         int max_guesses, std::uint64_t seed) {
   const sdf::ShapeField field =
       TrueWorld(scenario, scenario.epsilon_m + robot.largest_sphere_radius_m());
-  const auto planner = planner::MakePlanner(scenario.planner, robot, MakePlannerSettings(scenario));
+  const auto planner = MakePlanner(scenario, robot);
   planner::PlanRequest request;
   request.field = &field;
   request.step_s = scenario.step_s;
-  request.num_states = static_cast<int>(std::lround(scenario.horizon_s / scenario.step_s)) + 1;
+  request.num_states =
+      static_cast<int>(std::lround(HorizonOf(scenario, *planner) / scenario.step_s)) + 1;
   request.q_start = scenario.q_start;
   request.v_start = Eigen::VectorXd::Zero(robot.num_joints());
   request.q_goal = scenario.q_goal;

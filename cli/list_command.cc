@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <memory>
 #include <string>
@@ -9,6 +11,7 @@
 #include "sidestep/cli/data_paths.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
+#include "sidestep/planner/parameters.h"
 #include "sidestep/planner/registry.h"
 #include "sidestep/robot/robot_model.h"
 #include "sidestep/scenarios/scenario.h"
@@ -44,6 +47,20 @@ std::string ChoicesOf(const std::string& scenario_file) {
   return lines;
 }
 
+// With a line for each parameter that it declares.
+std::string MeaningOfPlanner(const std::string& name) {
+  const planner::PlannerKind kind = planner::KindOfPlanner(name);
+  std::string lines = kind.meaning;
+  for (const planner::Parameter& one : kind.parameters) {
+    const std::string bounds = planner::BoundsOf(one);
+    lines += fmt::format("\n    --set planner.{}={}{}  {}{}: {}", one.name,
+                         planner::ToText(one.default_value),
+                         one.unit.empty() ? "" : " [" + one.unit + "]", planner::TypeOf(one),
+                         bounds.empty() ? "" : " " + bounds, one.meaning);
+  }
+  return lines;
+}
+
 // Everything that can be named, but for scenario files that are wrong: why is in `faults`.
 class Catalogue {
  public:
@@ -54,7 +71,7 @@ class Catalogue {
     for (const sdf::Knowledge one : sdf::kAllKnowledge) {
       knowledge.items.push_back({ToString(one)});
     }
-    kinds_.push_back({"planners", Items(planner::PlannerNames(), &planner::MeaningOfPlanner)});
+    kinds_.push_back({"planners", Items(planner::PlannerNames(), &MeaningOfPlanner)});
     kinds_.push_back({"predictors", Items(sdf::PredictorNames(), &sdf::MeaningOfPredictor)});
     kinds_.push_back({"sensors", Items(sim::SensorNames(), &sim::MeaningOfSensor)});
     Kind& metrics = kinds_.emplace_back(Kind{"metrics", {}});

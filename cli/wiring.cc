@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "sidestep/bench/resolve.h"
+#include "sidestep/bench/scenario_planner.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
-#include "sidestep/planner/registry.h"
 #include "sidestep/scenarios/variations.h"
 #include "sidestep/sdf/prediction/registry.h"
 #include "sidestep/sdf/world_model.h"
@@ -112,7 +112,7 @@ scenarios::Scenario LoadOverridden(const std::string& name, const Overrides& ove
 }
 
 Problem AddRobot(scenarios::Scenario scenario, const DataPaths& paths) {
-  CheckWord(scenario, "planner.name", scenario.planner, planner::PlannerNames());
+  bench::ResolvePlanner(scenario);
   CheckWord(scenario, "robot.model", scenario.robot, ModelNames(paths.models, "robot.yaml"));
   robot::RobotModel robot = robot::RobotModel::Load(paths.models, scenario.robot, scenario.X_WB);
   const std::string mjcf = paths.models + "/" + scenario.robot + "/" + scenario.robot + ".xml";

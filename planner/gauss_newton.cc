@@ -151,7 +151,8 @@ bool GaussNewton::Step() {
 GaussNewtonSummary GaussNewton::Solve() {
   GaussNewtonSummary summary;
   summary.errors.push_back(ComputeCost().total());
-  while (summary.iterations() < options_.max_iterations && !summary.converged) {
+  while (summary.iterations() < options_.max_iterations && !summary.converged &&
+         !options_.budget.IsSpent(summary.iterations())) {
     if (!Step()) break;
     const double before = summary.errors.back(), after = ComputeCost().total();
     summary.errors.push_back(after);

@@ -25,6 +25,7 @@ struct GaussNewtonOptions {
   int max_iterations = 100;
   double absolute_decrease = 1e-5;
   double relative_decrease = 1e-5;
+  PlanBudget budget = {};  ///< ends it likewise
 };
 
 /// What one solve did. `errors` holds the objective before it and after each of its steps.

@@ -1,6 +1,5 @@
 #include "sidestep/planner/gauss_newton_planner.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "sidestep/planner/first_guess.h"
@@ -9,19 +8,20 @@
 namespace sidestep::planner {
 
 GaussNewtonPlanner::GaussNewtonPlanner(const robot::RobotModel& robot,
-                                       const PlannerSettings& settings)
-    : Planner(robot, settings) {}
+                                       const PlannerSettings& settings, const GpSettings& gp)
+    : Planner(robot, settings), gp_(gp) {}
 
 PlanAnswer GaussNewtonPlanner::DoPlan(const PlanRequest& request, PlanJudge&) const {
   const Trajectory guess =
       request.initial ? MakeWarmStart(request) : MakeDirectMotion(request, Timing::kWholeTime);
   GaussNewtonOptions options;
   options.epsilon_m = settings().epsilon_m;
-  options.sigma_obs = settings().sigma_obs;
-  options.num_interpolated = settings().num_interpolated;
-  options.qc = settings().qc;
-  options.max_iterations = std::min(settings().max_iterations, request.budget.iterations);
-  options.relative_decrease = settings().function_tolerance;
+  options.sigma_obs = gp_.sigma_obs;
+  options.num_interpolated = gp_.num_interpolated;
+  options.qc = gp_.qc;
+  options.max_iterations = gp_.max_iterations;
+  options.budget = request.budget;
+  options.relative_decrease = gp_.function_tolerance;
 
   // States before the last fixed one decide nothing.
   const int num_fixed = request.num_fixed, num_solved = request.num_states - num_fixed + 1;
@@ -29,10 +29,9 @@ PlanAnswer GaussNewtonPlanner::DoPlan(const PlanRequest& request, PlanJudge&) co
       robot(),
       {guess.t_s.tail(num_solved), guess.q.rightCols(num_solved), guess.v.rightCols(num_solved)},
       options);
-  problem.AddPrior(0, guess.q.col(num_fixed - 1), guess.v.col(num_fixed - 1),
-                   settings().sigma_goal);
+  problem.AddPrior(0, guess.q.col(num_fixed - 1), guess.v.col(num_fixed - 1), gp_.sigma_goal);
   problem.AddPrior(num_solved - 1, request.q_goal, Eigen::VectorXd::Zero(robot().num_joints()),
-                   settings().sigma_goal);
+                   gp_.sigma_goal);
   for (int k = 1; k < num_solved; ++k) problem.SetField(k, *request.field, request.start);
   const GaussNewtonSummary summary = problem.Solve();
 
@@ -45,9 +44,14 @@ PlanAnswer GaussNewtonPlanner::DoPlan(const PlanRequest& request, PlanJudge&) co
           .cost = problem.ComputeCost()};
 }
 
-std::unique_ptr<Planner> MakeGaussNewtonPlanner(const robot::RobotModel& robot,
-                                                const PlannerSettings& settings) {
-  return std::make_unique<GaussNewtonPlanner>(robot, settings);
+PlannerKind GaussNewtonKind() {
+  return {"the solver of the published experiments: full Gauss-Newton steps, no damping",
+          SingleSolveParameters().declared(),
+          [](const robot::RobotModel& robot, const PlannerSettings& settings,
+             const Parameters& parameters) {
+            return std::make_unique<GaussNewtonPlanner>(robot, settings,
+                                                        SingleSolveParameters().Read(parameters));
+          }};
 }
 
 }  // namespace sidestep::planner

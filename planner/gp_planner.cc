@@ -72,18 +72,19 @@ EpisodeTime FirstFreeTime(const PlanRequest& request) {
 
 }  // namespace
 
-GpPlanner::GpPlanner(const robot::RobotModel& robot, const PlannerSettings& settings)
-    : Planner(robot, settings) {}
+GpPlanner::GpPlanner(const robot::RobotModel& robot, const PlannerSettings& settings,
+                     const GpSettings& gp)
+    : Planner(robot, settings), gp_(gp) {}
 
 GpPlanner::Candidate GpPlanner::Solve(const PlanRequest& request, PlanJudge& judge,
                                       const Trajectory& guess, Stages stages, int iterations_done,
                                       const Clearance* to_beat) const {
   GpProblemOptions options;
   options.epsilon_m = settings().epsilon_m;
-  options.sigma_obs = settings().sigma_obs;
-  options.num_interpolated = settings().num_interpolated;
-  options.qc = settings().qc;
-  options.sigma_goal = settings().sigma_goal;
+  options.sigma_obs = gp_.sigma_obs;
+  options.num_interpolated = gp_.num_interpolated;
+  options.qc = gp_.qc;
+  options.sigma_goal = gp_.sigma_goal;
   options.self_epsilon_m = kSelfEpsilon_m;
   options.condensed = true;
   LimitWeights limits;
@@ -94,7 +95,7 @@ GpPlanner::Candidate GpPlanner::Solve(const PlanRequest& request, PlanJudge& jud
   GpProblem problem(robot(), request, guess, options);
   PlanAnswer answer;
   const int max_iterations =
-      to_beat ? std::min(kTrialIterations, settings().max_iterations) : settings().max_iterations;
+      to_beat ? std::min(kTrialIterations, gp_.max_iterations) : gp_.max_iterations;
   const auto solve = [&](double function_tolerance) {
     const int left = request.budget.iterations - iterations_done - answer.iterations;
     if (left <= 0) return false;
@@ -113,7 +114,7 @@ GpPlanner::Candidate GpPlanner::Solve(const PlanRequest& request, PlanJudge& jud
     if (!first.verdict.is_free() && !IsSafer(first.verdict.clearance, *to_beat)) return first;
   }
   problem.AddLimits(limits, settings().velocity_scale, settings().acceleration_scale);
-  answer.converged = solve(settings().function_tolerance);
+  answer.converged = solve(gp_.function_tolerance);
   answer.cost = problem.ComputeCost();
   return judged();
 }
@@ -156,7 +157,7 @@ PlanAnswer GpPlanner::DoPlan(const PlanRequest& request, PlanJudge& judge) const
   }
   // A warm start has less time for one. Other ones a cycle later: who waits without a way out tries
   // more and more of them.
-  const int num_detours = request.initial ? 0 : settings().num_detours;
+  const int num_detours = request.initial ? 0 : gp_.num_detours;
   RandomStream random(std::bit_cast<std::uint64_t>(FirstFreeTime(request).seconds()), "detours");
   for (int i = 0; i < num_detours && !best.verdict.is_free(); ++i) {
     attempt(MakeDetour(request, random));
@@ -165,9 +166,13 @@ PlanAnswer GpPlanner::DoPlan(const PlanRequest& request, PlanJudge& judge) const
   return std::move(best.answer);
 }
 
-std::unique_ptr<Planner> MakeGpPlanner(const robot::RobotModel& robot,
-                                       const PlannerSettings& settings) {
-  return std::make_unique<GpPlanner>(robot, settings);
+PlannerKind GpmpKind() {
+  return {"trajectory optimisation after GPMP2, with limits, detours and the links kept apart",
+          GpParameters().declared(),
+          [](const robot::RobotModel& robot, const PlannerSettings& settings,
+             const Parameters& parameters) {
+            return std::make_unique<GpPlanner>(robot, settings, GpParameters().Read(parameters));
+          }};
 }
 
 }  // namespace sidestep::planner

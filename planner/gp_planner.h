@@ -1,8 +1,8 @@
 #pragma once
 
-#include <memory>
-
+#include "sidestep/planner/gp_settings.h"
 #include "sidestep/planner/planner.h"
+#include "sidestep/planner/planner_kind.h"
 #include "sidestep/planner/planner_settings.h"
 
 namespace sidestep::planner {
@@ -24,7 +24,8 @@ namespace sidestep::planner {
 class GpPlanner final : public Planner {
  public:
   /// @throws std::invalid_argument for settings out of range.
-  GpPlanner(const robot::RobotModel& robot, const PlannerSettings& settings);
+  GpPlanner(const robot::RobotModel& robot, const PlannerSettings& settings,
+            const GpSettings& gp = {});
 
   PlannerCapabilities capabilities() const override {
     return {.reaches_goal = true, .avoids_obstacles = true};
@@ -48,9 +49,9 @@ class GpPlanner final : public Planner {
   bool IsWithinLimits(const Verdict& verdict) const;  // the robot's own, unscaled
   /// Free within limits comes before free, free before not free; then what is safer.
   bool IsBetter(const Verdict& a, const Verdict& b) const;
+  GpSettings gp_;
 };
 
-std::unique_ptr<Planner> MakeGpPlanner(const robot::RobotModel& robot,
-                                       const PlannerSettings& settings);
+PlannerKind GpmpKind();
 
 }  // namespace sidestep::planner

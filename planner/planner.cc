@@ -1,5 +1,8 @@
 #include "sidestep/planner/planner.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <exception>
 #include <stdexcept>
 #include <utility>
@@ -36,6 +39,22 @@ std::string ToString(PlanStatus status) {
 Planner::Planner(const robot::RobotModel& robot, const PlannerSettings& settings)
     : robot_(robot), settings_(settings) {
   CheckPlannerSettings(settings);
+}
+
+double Planner::DirectTime_s(const Eigen::VectorXd& q_start, const Eigen::VectorXd& q_goal) const {
+  double time_s = 0;
+  for (int j = 0; j < robot_.num_joints(); ++j) {
+    const robot::JointLimits& joint = robot_.limits()[static_cast<std::size_t>(j)];
+    const double way = std::abs(q_goal(j) - q_start(j));
+    // Of the cubic over a time T the greatest velocity is 3/2 way / T, acceleration 6 way / T^2.
+    if (settings_.velocity_limits) {
+      time_s = std::max(time_s, 1.5 * way / (settings_.velocity_scale * joint.v_max));
+    }
+    if (settings_.acceleration_limits) {
+      time_s = std::max(time_s, std::sqrt(6 * way / (settings_.acceleration_scale * joint.a_max)));
+    }
+  }
+  return time_s;
 }
 
 PlanResult Planner::Plan(const PlanRequest& request) const {

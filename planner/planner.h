@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <string>
 
@@ -65,6 +66,11 @@ class Planner {
   virtual ~Planner() = default;
   /// @throws std::invalid_argument for a request that means nothing (CheckPlanRequest).
   PlanResult Plan(const PlanRequest& request) const;
+
+  /// The least time [s] in which the direct motion from rest to rest (MakeDirectMotion) keeps the
+  /// limits of velocity and acceleration that the settings ask for. A shorter horizon would ask for
+  /// what cannot be had. @param q_start, q_goal shape n.
+  double DirectTime_s(const Eigen::VectorXd& q_start, const Eigen::VectorXd& q_goal) const;
 
   virtual PlannerCapabilities capabilities() const { return {}; }
   const robot::RobotModel& robot() const { return robot_; }

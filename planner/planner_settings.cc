@@ -11,8 +11,6 @@ void Require(bool condition, const std::string& what) {
   if (!condition) throw std::invalid_argument("planner settings: " + what);
 }
 
-bool IsPositive(double value) { return std::isfinite(value) && value > 0; }
-
 bool IsFraction(double value) { return value > 0 && value <= 1; }
 
 constexpr double kLimitTolerance = 1e-3;  // what an optimum at a limit exceeds it by is rounding
@@ -21,15 +19,8 @@ constexpr double kLimitTolerance = 1e-3;  // what an optimum at a limit exceeds 
 
 void CheckPlannerSettings(const PlannerSettings& settings) {
   Require(std::isfinite(settings.epsilon_m) && settings.epsilon_m >= 0, "epsilon_m must be >= 0");
-  Require(IsPositive(settings.sigma_obs), "sigma_obs must be > 0");
-  Require(settings.num_interpolated >= 0, "num_interpolated must be >= 0");
-  Require(IsPositive(settings.qc), "qc must be > 0");
-  Require(IsPositive(settings.sigma_goal), "sigma_goal must be > 0");
   Require(IsFraction(settings.velocity_scale), "velocity_scale must be in (0, 1]");
   Require(IsFraction(settings.acceleration_scale), "acceleration_scale must be in (0, 1]");
-  Require(settings.max_iterations >= 1, "max_iterations must be >= 1");
-  Require(settings.num_detours >= 0, "num_detours must be >= 0");
-  Require(IsPositive(settings.function_tolerance), "function_tolerance must be > 0");
 }
 
 bool KeepsLimits(const LimitUse& use, const PlannerSettings& settings) {

@@ -6,8 +6,7 @@
 
 namespace sidestep::planner {
 
-#define SIDESTEP_PLANNER(name, meaning, make, file) \
-  std::unique_ptr<Planner> make(const robot::RobotModel&, const PlannerSettings&);
+#define SIDESTEP_PLANNER(name, kind, file) PlannerKind kind();
 #include "sidestep/planner/planners.def"
 #undef SIDESTEP_PLANNER
 
@@ -15,11 +14,10 @@ namespace {
 
 struct Entry {
   const char* name;
-  const char* meaning;
-  std::unique_ptr<Planner> (*make)(const robot::RobotModel& robot, const PlannerSettings& settings);
+  PlannerKind (*kind)();
 };
 constexpr Entry kPlanners[] = {
-#define SIDESTEP_PLANNER(name, meaning, make, file) {name, meaning, &(make)},
+#define SIDESTEP_PLANNER(name, kind, file) {name, &(kind)},
 #include "sidestep/planner/planners.def"
 #undef SIDESTEP_PLANNER
 };
@@ -41,12 +39,15 @@ std::vector<std::string> PlannerNames() {
   return names;
 }
 
-std::string MeaningOfPlanner(const std::string& name) { return Find(name).meaning; }
+PlannerKind KindOfPlanner(const std::string& name) { return Find(name).kind(); }
+
+std::string MeaningOfPlanner(const std::string& name) { return KindOfPlanner(name).meaning; }
 
 std::unique_ptr<Planner> MakePlanner(const std::string& name, const robot::RobotModel& robot,
-                                     const PlannerSettings& settings) {
-  CheckPlannerSettings(settings);
-  return Find(name).make(robot, settings);
+                                     const PlannerSettings& settings,
+                                     const Parameters& parameters) {
+  const PlannerKind kind = KindOfPlanner(name);
+  return kind.make(robot, settings, Complete(kind.parameters, parameters));
 }
 
 std::string CeresVersion() { return CERES_VERSION_STRING; }

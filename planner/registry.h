@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "sidestep/planner/parameters.h"
 #include "sidestep/planner/planner.h"
+#include "sidestep/planner/planner_kind.h"
 #include "sidestep/planner/planner_settings.h"
 #include "sidestep/robot/robot_model.h"
 
@@ -16,11 +18,15 @@ std::string CeresVersion();
 /// The names of all planners.
 std::vector<std::string> PlannerNames();
 
-/// What one does, in a line. @throws std::invalid_argument for an unknown name.
+/// @throws std::invalid_argument for an unknown name.
+PlannerKind KindOfPlanner(const std::string& name);
 std::string MeaningOfPlanner(const std::string& name);
 
-/// @throws std::invalid_argument for an unknown name or settings out of range.
+/// @param parameters those that are not to have their defaults.
+/// @throws std::invalid_argument for an unknown name, for settings or parameters out of range, and
+///   for a parameter that this planner does not have.
 std::unique_ptr<Planner> MakePlanner(const std::string& name, const robot::RobotModel& robot,
-                                     const PlannerSettings& settings);
+                                     const PlannerSettings& settings,
+                                     const Parameters& parameters = {});
 
 }  // namespace sidestep::planner

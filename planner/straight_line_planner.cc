@@ -8,9 +8,12 @@ PlanAnswer StraightLinePlanner::DoPlan(const PlanRequest& request, PlanJudge&) c
   return {.trajectory = MakeDirectMotion(request, Timing::kWholeTime), .converged = true};
 }
 
-std::unique_ptr<Planner> MakeStraightLinePlanner(const robot::RobotModel& robot,
-                                                 const PlannerSettings& settings) {
-  return std::make_unique<StraightLinePlanner>(robot, settings);
+PlannerKind StraightLineKind() {
+  return {"straight to the goal, whatever is in the way: what planning is worth",
+          {},
+          [](const robot::RobotModel& robot, const PlannerSettings& settings, const Parameters&) {
+            return std::make_unique<StraightLinePlanner>(robot, settings);
+          }};
 }
 
 }  // namespace sidestep::planner

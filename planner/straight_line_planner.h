@@ -1,8 +1,7 @@
 #pragma once
 
-#include <memory>
-
 #include "sidestep/planner/planner.h"
+#include "sidestep/planner/planner_kind.h"
 #include "sidestep/planner/planner_settings.h"
 
 namespace sidestep::planner {
@@ -20,7 +19,6 @@ class StraightLinePlanner final : public Planner {
   PlanAnswer DoPlan(const PlanRequest& request, PlanJudge& judge) const override;
 };
 
-std::unique_ptr<Planner> MakeStraightLinePlanner(const robot::RobotModel& robot,
-                                                 const PlannerSettings& settings);
+PlannerKind StraightLineKind();
 
 }  // namespace sidestep::planner

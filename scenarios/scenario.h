@@ -152,9 +152,10 @@ struct Scenario {
   std::vector<MovingObstacle> moving_obstacles;
 
   std::string planner;
-  double epsilon_m = 0, sigma_obs = 0, qc = 1;
+  /// What the file sets of this planner, which declares what can be set and judges the texts.
+  std::map<std::string, std::string> planner_parameters;
+  double epsilon_m = 0;
   double velocity_scale = 1, acceleration_scale = 1;
-  int num_interpolated = 0, max_iterations = 0;
   /// Without velocity limits the simulated arm is not held to them either; how far a motion exceeds
   /// them is recorded.
   bool velocity_limits = true, acceleration_limits = true, position_limits = true;
@@ -189,6 +190,9 @@ std::string ToString(Latency latency);
 /// The same for those of kSafetyWords.
 SafetyProfile SafetyFromString(const std::string& word);
 std::string ToString(SafetyProfile profile);
+
+/// The keys of `planner` that are asked of every planner; any other one is the planner's own.
+std::vector<std::string> SharedPlannerKeys();
 
 /// What to throw where the value of `key` (a path in the file) is wrong: `FILE:LINE: KEY: WHY`, or
 /// `--set KEY: WHY` where a person set it, or a part of it.

@@ -30,9 +30,10 @@ constexpr double kShortestLeg_s = 0.01;
 // Objects' fields are padded for it on all sides.
 constexpr double kMaxGrowth_m = 0.5;
 // The objective is weighted by the squares of these: beyond such bounds it has no digits left.
-constexpr double kLeastSigmaObs_m = 1e-5, kMostSigmaObs_m = 1e3;
-constexpr double kLeastQc = 1e-6, kMostQc = 1e6;
 constexpr double kLeastScale = 0.001;  // of a limit
+constexpr const char* kSharedPlannerKeys[] = {
+    "name",           "epsilon_m",       "velocity_scale",  "acceleration_scale", "growth_sigmas",
+    "growth_limit_m", "position_limits", "velocity_limits", "acceleration_limits"};
 constexpr double kMostSigmas = 100;
 constexpr double kFarthest_m = 1e6;  // beyond, positions have no tenth of a micrometre
 
@@ -343,17 +344,10 @@ void ReadPlanner(const YamlReader& top, Scenario& scenario) {
     }
     return value;
   };
-  scenario.sigma_obs =
-      within("sigma_obs", map.GetPositive("sigma_obs"), kLeastSigmaObs_m, kMostSigmaObs_m);
-  scenario.num_interpolated = map.GetInt("n_int");
-  if (scenario.num_interpolated < 0 || scenario.num_interpolated > 100) {
-    map.Fail("n_int", "must be from 0 to 100, is " + std::to_string(scenario.num_interpolated));
-  }
   const auto number = [&](const char* key, double otherwise) {
     return map.Has(key) ? map.GetPositive(key) : otherwise;
   };
   const auto flag = [&](const char* key) { return map.Has(key) ? map.GetBool(key) : true; };
-  scenario.qc = within("qc", number("qc", 1.0), kLeastQc, kMostQc);
   const auto fraction = [&](const char* key, double otherwise) {
     const double value = number(key, otherwise);
     if (value > 1) map.Fail(key, "must be at most 1");
@@ -361,10 +355,6 @@ void ReadPlanner(const YamlReader& top, Scenario& scenario) {
   };
   scenario.velocity_scale = fraction("velocity_scale", 0.95);
   scenario.acceleration_scale = fraction("acceleration_scale", 0.5);
-  scenario.max_iterations = map.Has("max_iterations") ? map.GetInt("max_iterations") : 50;
-  if (scenario.max_iterations < 1 || scenario.max_iterations > 100000) {
-    map.Fail("max_iterations", "must be from 1 to 100000");
-  }
   const auto size = [&](const char* key, double otherwise) {
     return map.Has(key) ? map.GetNonNegative(key) : otherwise;
   };
@@ -374,6 +364,12 @@ void ReadPlanner(const YamlReader& top, Scenario& scenario) {
   scenario.position_limits = flag("position_limits");
   scenario.velocity_limits = flag("velocity_limits");
   scenario.acceleration_limits = flag("acceleration_limits");
+  for (const std::string& key : map.Keys()) {
+    if (std::count(std::begin(kSharedPlannerKeys), std::end(kSharedPlannerKeys), key) != 0)
+      continue;
+    if (!map.IsScalar(key)) map.Fail(key, "must be a number, true or false, or a word");
+    scenario.planner_parameters[key] = map.GetString(key);
+  }
   map.CheckNoUnknownKeys();
 }
 
@@ -607,6 +603,10 @@ std::optional<std::string> SetPath(const Scenario& scenario, const std::string& 
 }
 
 }  // namespace
+
+std::vector<std::string> SharedPlannerKeys() {
+  return {std::begin(kSharedPlannerKeys), std::end(kSharedPlannerKeys)};
+}
 
 InputError WrongValue(const Scenario& scenario, const std::string& key, const std::string& why,
                       const std::vector<std::string>& against) {

@@ -1,3 +1,4 @@
+#include <charconv>
 #include <cmath>
 
 #include "sidestep/core/joined.h"
@@ -116,6 +117,14 @@ std::string RobotText(const Scenario& scenario) {
          ", step_s: " + Number(scenario.step_s) + "}\n";
 }
 
+// What YAML does not take for a text.
+bool IsNumberOrSwitch(const std::string& text) {
+  double number = 0;
+  const char* const end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, number);
+  return text == "true" || text == "false" || (parsed.ec == std::errc() && parsed.ptr == end);
+}
+
 std::string PlannerText(const Scenario& scenario) {
   std::string text = "planner:\n";
   const auto line = [&](const char* key, const std::string& value) {
@@ -123,17 +132,16 @@ std::string PlannerText(const Scenario& scenario) {
   };
   line("name", Quoted(scenario.planner));
   line("epsilon_m", Number(scenario.epsilon_m));
-  line("sigma_obs", Number(scenario.sigma_obs));
-  line("n_int", std::to_string(scenario.num_interpolated));
-  line("qc", Number(scenario.qc));
   line("velocity_scale", Number(scenario.velocity_scale));
   line("acceleration_scale", Number(scenario.acceleration_scale));
   line("growth_sigmas", Number(scenario.growth_sigmas));
   line("growth_limit_m", Number(scenario.growth_limit_m));
-  line("max_iterations", std::to_string(scenario.max_iterations));
   line("position_limits", Word(scenario.position_limits));
   line("velocity_limits", Word(scenario.velocity_limits));
   line("acceleration_limits", Word(scenario.acceleration_limits));
+  for (const auto& [key, value] : scenario.planner_parameters) {
+    line(key.c_str(), IsNumberOrSwitch(value) ? value : Quoted(value));
+  }
   return text + "replanning: {rate_hz: " + Number(scenario.replan_rate_hz) +
          ", latency: " + ToString(scenario.latency) + ", latency_s: " + Number(scenario.latency_s) +
          "}\nsafety: {profile: " + ToString(scenario.safety.profile) +

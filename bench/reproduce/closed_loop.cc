@@ -24,8 +24,8 @@ void TimeStep(const scenarios::Scenario& scene, const GridSpec& grid, double mar
 scenarios::Scenario PublishedClosedLoop(scenarios::Scenario scenario, double speed_m_s,
                                         int voxels_per_side) {
   scenario.epsilon_m = 0.3;
-  scenario.sigma_obs = 0.05;
-  scenario.num_interpolated = 0;
+  scenario.planner_parameters["sigma_obs"] = "0.05";
+  scenario.planner_parameters["n_int"] = "0";
   scenario.sensor.rate_hz = scenario.replan_rate_hz;
   scenario.predictor = "two_frame";
   scenario.grid.size = {voxels_per_side, voxels_per_side, voxels_per_side};

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "sidestep/planner/planner.h"
+#include "sidestep/planner/planner_kind.h"
 #include "sidestep/planner/planner_settings.h"
 
 namespace sidestep::planner {
@@ -33,9 +34,12 @@ class HoldStillPlanner final : public Planner {
 
 }  // namespace
 
-std::unique_ptr<Planner> MakeHoldStillPlanner(const robot::RobotModel& robot,
-                                              const PlannerSettings& settings) {
-  return std::make_unique<HoldStillPlanner>(robot, settings);
+PlannerKind HoldStillKind() {
+  return {"stays where it is",
+          {},  // Nothing can be set of it; planner/gp_settings.cc has those of another one.
+          [](const robot::RobotModel& robot, const PlannerSettings& settings, const Parameters&) {
+            return std::make_unique<HoldStillPlanner>(robot, settings);
+          }};
 }
 
 }  // namespace sidestep::planner

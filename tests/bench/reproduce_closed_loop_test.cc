@@ -22,8 +22,8 @@ TEST(ClosedLoop, TakesThePublishedSettings) {
       scenarios::LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/hsr_walkway.yaml");
   const scenarios::Scenario scenario = PublishedClosedLoop(walkway, 1.2, 64);
   EXPECT_EQ(scenario.epsilon_m, 0.3);
-  EXPECT_EQ(scenario.sigma_obs, 0.05);
-  EXPECT_EQ(scenario.num_interpolated, 0);
+  EXPECT_EQ(scenario.planner_parameters.at("sigma_obs"), "0.05");
+  EXPECT_EQ(scenario.planner_parameters.at("n_int"), "0");
   EXPECT_EQ(scenario.grid.size, (std::array<int, 3>{64, 64, 64}));
   EXPECT_EQ(scenario.grid.cell_m, 0.04);
   EXPECT_EQ(std::get<scenarios::LinearMotion>(scenario.moving_obstacles.at(0).motion).speed_m_s,

@@ -30,8 +30,6 @@ scenarios::Scenario SwingingScenario() {
   scenario.step_s = 0.5;
   scenario.planner = "straight_line";
   scenario.epsilon_m = 0.1;
-  scenario.sigma_obs = 0.1;
-  scenario.max_iterations = 1;
   scenario.knowledge = "execute_and_update";
   scenario.predictor = "two_frame";
   scenario.replan_rate_hz = 0.2;

@@ -171,21 +171,43 @@ TEST_P(EveryPlanner, SaysSoWhenAFreePlanExceedsALimitThatItWasAskedToKeep) {
 TEST_P(EveryPlanner, RefusesSettingsOutOfRange) {
   const std::vector<std::function<void(PlannerSettings&)>> spoil = {
       [](PlannerSettings& s) { s.epsilon_m = -0.1; },
-      [](PlannerSettings& s) { s.sigma_obs = 0; },
-      [](PlannerSettings& s) { s.num_interpolated = -1; },
-      [](PlannerSettings& s) { s.qc = kNaN; },
-      [](PlannerSettings& s) { s.sigma_goal = 0; },
       [](PlannerSettings& s) { s.velocity_scale = 1.1; },
       [](PlannerSettings& s) { s.acceleration_scale = 0; },
-      [](PlannerSettings& s) { s.max_iterations = 0; },
-      [](PlannerSettings& s) { s.num_detours = -1; },
-      [](PlannerSettings& s) { s.function_tolerance = -1; },
   };
   for (std::size_t i = 0; i < spoil.size(); ++i) {
     PlannerSettings settings;
     spoil[i](settings);
     EXPECT_THROW(MakePlanner(GetParam(), arm_, settings), std::invalid_argument) << "setting " << i;
   }
+}
+
+TEST_P(EveryPlanner, TakesWhatItDeclaresAndNothingElse) {
+  const std::vector<Parameter> declared = KindOfPlanner(GetParam()).parameters;
+  const auto make = [&](const Parameters& given) {
+    return MakePlanner(GetParam(), arm_, {}, given)->Plan(Request());
+  };
+  const PlanResult by_default = make({});
+  Parameters defaults;
+  for (const Parameter& parameter : declared) {
+    EXPECT_FALSE(parameter.meaning.empty()) << parameter.name;
+    EXPECT_NO_THROW(CheckValue(parameter, parameter.default_value)) << parameter.name;
+    defaults[parameter.name] = ParseValue(parameter, ToText(parameter.default_value));
+    const auto refuses = [&](const ParameterValue& value) {
+      EXPECT_THROW(make({{parameter.name, value}}), std::invalid_argument) << parameter.name;
+    };
+    refuses(std::string("no word of it"));
+    if (std::holds_alternative<double>(parameter.default_value)) {
+      refuses(kNaN);
+      if (std::isfinite(parameter.least)) refuses(parameter.least - 1);
+      if (std::isfinite(parameter.most)) refuses(parameter.most * 1.01);
+    }
+    if (std::holds_alternative<int>(parameter.default_value)) {
+      if (std::isfinite(parameter.least)) refuses(static_cast<int>(parameter.least) - 1);
+      if (std::isfinite(parameter.most)) refuses(static_cast<int>(parameter.most) + 1);
+    }
+  }
+  EXPECT_EQ(make(defaults).trajectory->q, by_default.trajectory->q);
+  EXPECT_THROW(make({{"nonesuch", 1.0}}), std::invalid_argument);
 }
 
 TEST_P(EveryPlanner, RefusesRequestsThatMeanNothing) {

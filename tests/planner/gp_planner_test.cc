@@ -48,9 +48,9 @@ TEST_F(GpPlannerTest, TakesTheCubicToTheGoalWhereNothingIsInTheWay) {
 TEST_F(GpPlannerTest, FindsTheCubicFromAnyGuess) {
   PlanRequest request = Request(nothing_);
   request.initial = MakeDirectMotion(request, Timing::kLeaveLate);
-  PlannerSettings settings = WithoutLimits();
-  settings.function_tolerance = 1e-12;
-  const PlanResult result = GpPlanner(arm_, settings).Plan(request);
+  GpSettings gp;
+  gp.function_tolerance = 1e-12;
+  const PlanResult result = GpPlanner(arm_, WithoutLimits(), gp).Plan(request);
   EXPECT_LT((result.trajectory->q - MakeDirectMotion(request, Timing::kWholeTime).q)
                 .cwiseAbs()
                 .maxCoeff(),
@@ -75,10 +75,11 @@ TEST_F(GpPlannerTest, TakesADetourWhereNoTimingHelps) {
   // The ball stands where the forearm would sweep; the elbow must fold first.
   const BallField ball({0.8, 0, 0}, {0, 0, 0}, 0.05);
   PlannerSettings settings;
-  settings.num_detours = 0;
-  EXPECT_EQ(GpPlanner(arm_, settings).Plan(Request(ball)).status, PlanStatus::kInCollision);
-  settings.num_detours = 8;
-  const PlanResult result = GpPlanner(arm_, settings).Plan(Request(ball));
+  GpSettings gp;
+  gp.num_detours = 0;
+  EXPECT_EQ(GpPlanner(arm_, settings, gp).Plan(Request(ball)).status, PlanStatus::kInCollision);
+  gp.num_detours = 8;
+  const PlanResult result = GpPlanner(arm_, settings, gp).Plan(Request(ball));
   EXPECT_GT(result.clearance.least_m, 0.1);
   // The few iterations of a trial leave a little of an excess over the velocity that was asked for.
   EXPECT_LE(result.limit_use.velocity, 1.01 * settings.velocity_scale);
@@ -115,9 +116,10 @@ TEST_F(GpPlannerTest, KeepsWithinLimitsThatTheFreeOptimumBreaks) {
 TEST_F(GpPlannerTest, ReportsTheIterationCap) {
   const BallField ball({1.08, 0, 0}, {0, 0, 0}, 0.02);
   PlannerSettings settings = WithoutLimits();  // one iteration does not come to keep them
-  settings.max_iterations = 1;
-  settings.function_tolerance = 1e-12;
-  const PlanResult result = GpPlanner(arm_, settings).Plan(Request(ball));
+  GpSettings gp;
+  gp.max_iterations = 1;
+  gp.function_tolerance = 1e-12;
+  const PlanResult result = GpPlanner(arm_, settings, gp).Plan(Request(ball));
   EXPECT_EQ(result.status, PlanStatus::kNotConverged);
 }
 

@@ -95,6 +95,22 @@ TEST(Planner, TellsAPlannerOfAMotionWhatItWillSayOfTheAnswer) {
   EXPECT_EQ(result.limit_use.velocity, told.limit_use.velocity);
 }
 
+TEST(Planner, KnowsHowLongTheDirectMotionTakesWithinItsLimits) {
+  for (const double scale : {0.05, 0.3, 1.0}) {
+    PlannerSettings settings;
+    settings.velocity_scale = scale;
+    settings.acceleration_scale = 0.5 * scale;
+    const Puppet puppet(Direct, settings);
+    PlanRequest request = Request();
+    request.num_fixed = 1;
+    const double time_s = puppet.DirectTime_s(request.q_start, request.q_goal);
+    request.step_s = time_s / (request.num_states - 1);
+    EXPECT_EQ(puppet.Plan(request).status, PlanStatus::kSolved) << scale;
+    request.step_s *= 0.99;
+    EXPECT_EQ(puppet.Plan(request).status, PlanStatus::kOverLimits) << scale;
+  }
+}
+
 // A trajectory that does not answer the request, and what is said of it.
 struct Broken {
   std::string name;
@@ -120,20 +136,23 @@ TEST_P(PlannerThatBreaksAPromise, HasFailedAndItIsSaidWhy) {
 INSTANTIATE_TEST_SUITE_P(
     Promises, PlannerThatBreaksAPromise,
     ::testing::Values(
-        Broken{"NotFinite",
-               [](Trajectory& t) { t.q(0, 20) = std::numeric_limits<double>::quiet_NaN(); },
-               "finite"},
-        Broken{"AnotherGrid", [](Trajectory& t) { t.t_s *= 1.5; }, "grid"},
+        Broken{
+            "NotFinite",
+            [](Trajectory& motion) { motion.q(0, 20) = std::numeric_limits<double>::quiet_NaN(); },
+            "finite"},
+        Broken{"AnotherGrid", [](Trajectory& motion) { motion.t_s *= 1.5; }, "grid"},
         Broken{"TooShort",
-               [](Trajectory& t) {
-                 t = {t.t_s.head(20).eval(), t.q.leftCols(20).eval(), t.v.leftCols(20).eval()};
+               [](Trajectory& motion) {
+                 motion = {motion.t_s.head(20).eval(), motion.q.leftCols(20).eval(),
+                           motion.v.leftCols(20).eval()};
                },
                "grid"},
-        Broken{"TooManyJoints", [](Trajectory& t) { t.q = t.v = Eigen::MatrixXd::Zero(3, 21); },
+        Broken{"TooManyJoints",
+               [](Trajectory& motion) { motion.q = motion.v = Eigen::MatrixXd::Zero(3, 21); },
                "3 joints, not 2"},
-        Broken{"AnotherStart", [](Trajectory& t) { t.q(1, 0) += 1e-12; }, "state 0"},
-        Broken{"AnotherFixedState", [](Trajectory& t) { t.v(0, 2) = 1e-12; }, "state 2"},
-        Broken{"Empty", [](Trajectory& t) { t = {}; }, "K >= 1"}),
+        Broken{"AnotherStart", [](Trajectory& motion) { motion.q(1, 0) += 1e-12; }, "state 0"},
+        Broken{"AnotherFixedState", [](Trajectory& motion) { motion.v(0, 2) = 1e-12; }, "state 2"},
+        Broken{"Empty", [](Trajectory& motion) { motion = {}; }, "K >= 1"}),
     [](const auto& test) { return test.param.name; });
 
 TEST(Planner, HasFailedWithTheWordsOfWhatItThrows) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sidestep/bench/scenario_planner.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/scenarios/scenario.h"
 #include "tests/support/temporary_folder.h"
@@ -30,7 +31,8 @@ std::vector<std::string> BadScenarios() {
 
 std::string MessageOf(const std::string& path) {
   try {
-    LoadScenario(path);
+    Scenario scenario = LoadScenario(path);
+    if (!scenario.robot.empty()) bench::ResolvePlanner(scenario);
   } catch (const InputError& error) {
     return error.what();
   }

@@ -4,6 +4,7 @@
 #include <sstream>
 #include <string>
 
+#include "sidestep/bench/scenario_planner.h"
 #include "sidestep/scenarios/scenario.h"
 #include "tests/support/key_page.h"
 #include "tests/support/temporary_folder.h"
@@ -19,7 +20,9 @@ std::string Read(const std::string& text) {
   const std::string path = (folder.path() / "page.yaml").string();
   std::ofstream(path) << text;
   std::ofstream(folder.path() / "track.csv") << "t,x,y,z\n0,2,0,0.85\n1,2,1,0.85\n";
-  return ToYaml(LoadScenario(path));
+  Scenario scenario = LoadScenario(path);
+  if (!scenario.robot.empty()) bench::ResolvePlanner(scenario);
+  return ToYaml(scenario);
 }
 
 TEST(ScenarioPage, TellsEveryKeyAsTheReaderHasIt) {
@@ -50,8 +53,8 @@ TEST(ScenarioPage, IsFoundOutWhereItDiffers) {
   } cases[] = {
       {"| `planner.sigma_obs` |", "| sigma |", ": has no row for `planner.sigma_obs`"},
       {"| `planner.sigma_obs` |", "| `planner.sigma` |", "the reader knows no key planner.sigma"},
-      {"| `planner.sigma_obs` |", "| `planner.n_int` |", "is a second row for planner.n_int"},
-      {"  sigma_obs: 0.05\n", "", "its example is refused"},
+      {"| `planner.sigma_obs` |", "| `planner.qc` |", "is a second row for planner.qc"},
+      {"  epsilon_m: 0.2\n", "", "its example is refused"},
       {"  qc: 1\n", "", "the example at the top of the page lacks planner.qc"},
       {"| `0.95` |", "| `0.9` |", "the default of planner.velocity_scale is not 0.9"},
       {"| `0.95` |", "| required |", "planner.velocity_scale need not be given"},

@@ -105,10 +105,10 @@ seed: 42
   EXPECT_LT((again.X_WB.rotation().coeffs() - scenario.X_WB.rotation().coeffs()).norm(), 1e-15);
   EXPECT_EQ(again.q_goal, scenario.q_goal);
   EXPECT_EQ(again.dwell_s, 0.3);
-  EXPECT_EQ(again.num_interpolated, 19);
+  EXPECT_EQ(again.planner_parameters, scenario.planner_parameters);
+  EXPECT_EQ(again.planner_parameters.at("n_int"), "19");
   EXPECT_EQ(again.velocity_scale, 0.75);
   EXPECT_EQ(again.acceleration_scale, 0.25);
-  EXPECT_EQ(again.max_iterations, 7);
   EXPECT_EQ(again.growth_sigmas, 1.5);
   EXPECT_EQ(again.growth_limit_m, 0.07);
   EXPECT_FALSE(again.velocity_limits);
@@ -208,7 +208,8 @@ TEST(Choices, OfAnOptionThatIsNotThereNameThoseThatAre) {
 TEST(Settings, TakeThePlaceOfTheFilesValues) {
   EXPECT_EQ(WithSettings({{"planner.epsilon_m", "0.25"}}).epsilon_m, 0.25);
   EXPECT_EQ(WithSettings({{"task.goal", "[1, 2]"}}).q_goal, Eigen::Vector2d(1, 2));
-  EXPECT_EQ(WithSettings({{"planner.qc", "3"}}).qc, 3);  // a key that the file leaves out
+  EXPECT_EQ(WithSettings({{"planner.qc", "3"}}).planner_parameters.at("qc"),
+            "3");  // a key that the file leaves out
   const Scenario slow = WithSettings({{"moving_obstacles[0].motion.random_walk.speed_m_s", "0.5"}});
   EXPECT_EQ(std::get<RandomWalkMotion>(slow.moving_obstacles[0].motion).speed_m_s, 0.5);
 }
@@ -228,8 +229,10 @@ TEST(Settings, ThatAreWrongAreBlamedOnThePersonWhoSetThem) {
             "--set planner.epsilon_m: must be a number, is 'wide'");
   EXPECT_EQ(Complaint({{"robot.base", "{position_m: [0, 0]}"}}),
             "--set robot.base.position_m: must have 3 numbers, has 2");
-  EXPECT_THAT(Complaint({{"planner.epsilonm", "1"}}),
-              ::testing::StartsWith("--set planner.epsilonm: is not a known key"));
+  EXPECT_THAT(Complaint({{"replanning.rate", "1"}}),
+              ::testing::StartsWith("--set replanning.rate: is not a known key"));
+  EXPECT_EQ(Complaint({{"planner.epsilonm", "[1]"}}),
+            "--set planner.epsilonm: must be a number, true or false, or a word");
   EXPECT_EQ(Complaint({{"planer.epsilon_m", "1"}}),
             "--set planer.epsilon_m: leads nowhere: there is no 'planer'");
   EXPECT_EQ(Complaint({{"moving_obstacles[1].name", "b"}}),

@@ -23,7 +23,7 @@ void Run() {
   sidestep::scenarios::Scenario scenario =
       sidestep::scenarios::LoadScenario(data + "/scenarios/hsr_walkway.yaml");
   if (scenario.horizon_s > kOutsideSeconds) throw std::runtime_error("takes too long");
-  scenario.max_iterations = 5;
+  scenario.planner_parameters["max_iterations"] = "5";
   const auto robot =
       sidestep::robot::RobotModel::Load(data + "/models", scenario.robot, scenario.X_WB);
   sidestep::bench::ResolveTask(scenario, robot);

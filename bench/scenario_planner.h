@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+
+#include "sidestep/planner/planner.h"
+#include "sidestep/robot/robot_model.h"
+#include "sidestep/scenarios/scenario.h"
+
+namespace sidestep::bench {
+
+/// Judges the scenario's planner and what is set of it, and fills in the defaults of what is not.
+/// What the file sets of its own planner is left out where a person has chosen another planner
+/// instead, which does not have it.
+/// @throws InputError naming the scenario's file, line and key.
+void ResolvePlanner(scenarios::Scenario& scenario);
+
+/// The planner that a scenario asks for.
+/// @throws std::invalid_argument for an unknown planner, or one of which this cannot be set.
+std::unique_ptr<planner::Planner> MakePlanner(const scenarios::Scenario& scenario,
+                                              const robot::RobotModel& robot);
+
+/// How far ahead plans reach [s]: the scenario's horizon or, where its limits do not let the direct
+/// motion from start to goal be over by then, as many steps as that takes.
+double HorizonOf(const scenarios::Scenario& scenario, const planner::Planner& planner);
+
+}  // namespace sidestep::bench
