@@ -21,7 +21,7 @@ using M = hn::Mask<D>;
 using D32 = hn::Rebind<std::int32_t, D>;
 using D64 = hn::Rebind<std::int64_t, D>;
 constexpr std::size_t kLanes = hn::MaxLanes(D());
-static_assert(kBlockSize % kLanes == 0);
+static_assert(Block::kVector % kLanes == 0);
 
 struct Point {
   V x, y, z;
