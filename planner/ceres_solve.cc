@@ -1,0 +1,24 @@
+#include "sidestep/planner/ceres_solve.h"
+
+#include <ceres/solver.h>
+
+namespace sidestep::planner {
+
+SolveOutcome SolveByLevenbergMarquardt(ceres::Problem& problem, int max_iterations,
+                                       double function_tolerance) {
+  ceres::Solver::Options options;
+  options.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
+  options.use_nonmonotonic_steps = true;
+  options.num_threads = 1;
+  options.max_num_iterations = max_iterations;
+  options.function_tolerance = function_tolerance;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  return {static_cast<int>(summary.iterations.size()) - 1,
+          summary.termination_type == ceres::CONVERGENCE};
+}
+
+}  // namespace sidestep::planner

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <memory>
+
+#include "sidestep/planner/planner_settings.h"
+#include "sidestep/planner/seeded_planner.h"
+
+namespace sidestep::planner {
+
+/// `gpmp_fast`: the objective and the seeds of `gpmp`, solved by our own block tridiagonal
+/// Levenberg-Marquardt (planner/fast/levenberg_marquardt.h) instead of Ceres'.
+class GpFastPlanner final : public SeededPlanner {
+ public:
+  /// @throws std::invalid_argument for settings out of range.
+  GpFastPlanner(const robot::RobotModel& robot, const PlannerSettings& settings)
+      : SeededPlanner(robot, settings) {}
+
+ private:
+  std::unique_ptr<TrajectoryOptimizer> MakeOptimizer(const PlanRequest& request) const override;
+};
+
+std::unique_ptr<Planner> MakeGpFastPlanner(const robot::RobotModel& robot,
+                                           const PlannerSettings& settings);
+
+}  // namespace sidestep::planner

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "sidestep/planner/objective/chain_quadratic.h"
+#include "sidestep/planner/objective/trajectory_objective.h"
+#include "sidestep/planner/trajectory_optimizer.h"
+#include "sidestep/sdf/aligned_vector.h"
+
+namespace sidestep::planner {
+
+/// Levenberg-Marquardt on a trajectory's free states: each iteration one block tridiagonal solve
+/// and one evaluation of the objective, which gives cost, gradient and Hessian at once.
+///
+/// Its rules are Ceres' own (version 2.1, trust_region_minimizer.cc, with non-monotonic steps, and
+/// Ceres' default options), so that Ceres is its oracle: the same iterations to the same costs. It
+/// ends sooner only where it knows that nothing is to be had: see Solve.
+class LevenbergMarquardt {
+ public:
+  explicit LevenbergMarquardt(TrajectoryObjective& objective);
+
+  /// Improves `states` (2n x K), until an iteration changes the cost by no more than
+  /// `function_tolerance` of it. The last step is then discarded, as by Ceres.
+  SolveOutcome Solve(int max_iterations, double function_tolerance, Eigen::MatrixXd& states);
+
+  /// The objective at the states that the last solve ended at.
+  const PlanCost& cost() const { return cost_; }
+
+ private:
+  double LargestGradient() const;
+  /// The scales of the unknowns, from the first Hessian.
+  void ChooseScales();
+  void ChooseDamping(double radius);
+
+  TrajectoryObjective& objective_;
+  ChainQuadratic present_, candidate_;
+  ChainSolver solver_;
+  sdf::AlignedVector<double> scale_, diagonal_, damping_, step_;
+  PlanCost cost_;
+};
+
+}  // namespace sidestep::planner
