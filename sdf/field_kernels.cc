@@ -13,6 +13,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace sidestep::sdf::field_kernels {
 namespace HWY_NAMESPACE {
+namespace {  // position-independent code inlines nothing that others could replace
 namespace hn = hwy::HWY_NAMESPACE;
 
 using D = hn::CappedTag<double, 8>;
@@ -213,6 +214,7 @@ void FindNearBoxes(const Boxes& boxes, const std::array<float, 3>& p_m, float re
   }
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace sidestep::sdf::field_kernels
 HWY_AFTER_NAMESPACE();

@@ -12,6 +12,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace sidestep::planner::chain_kernels {
 namespace HWY_NAMESPACE {
+namespace {  // position-independent code inlines nothing that others could replace
 namespace hn = hwy::HWY_NAMESPACE;
 
 using D = hn::CappedTag<double, 8>;
@@ -184,6 +185,7 @@ void AddBetweenStates(int n, int stride, std::span<const BetweenStates> between,
   }
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace sidestep::planner::chain_kernels
 HWY_AFTER_NAMESPACE();

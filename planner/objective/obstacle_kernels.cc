@@ -1,5 +1,7 @@
 #include "sidestep/planner/objective/obstacle_kernels.h"
 
+#include <limits>
+
 // Highway compiles what follows once for each instruction set, each time in a namespace of its own;
 // the end of the file picks one of them at run time.
 #undef HWY_TARGET_INCLUDE
@@ -10,6 +12,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace sidestep::planner::obstacle_kernels {
 namespace HWY_NAMESPACE {
+namespace {  // position-independent code inlines nothing that others could replace
 namespace hn = hwy::HWY_NAMESPACE;
 
 using D = hn::CappedTag<double, kGroup>;
@@ -246,6 +249,33 @@ void TermsOfGroup(const Arm& arm, const double* axes_8, const double* centers_8,
   }
 }
 
+void ClearanceOfGroup(const Arm& arm, const double* centers_8, const double* samples_8,
+                      double* clearance_8) {
+  const D d;
+  for (std::size_t lane = 0; lane < kGroup; lane += kLanes) {
+    V least = Constant(std::numeric_limits<double>::infinity());
+    const double* sample = samples_8 + lane;
+    for (const Arm::Hinge& hinge : arm.hinges) {
+      least = hn::Min(least, hn::Sub(hn::Load(d, sample), Constant(hinge.radius_m)));
+      sample += 4 * kGroup;
+    }
+    for (const Arm::LinkHinge& links : arm.link_hinges) {
+      for (const Arm::SpherePair& pair : links.pairs) {
+        const auto center = [&](int sphere) {
+          return Load3(centers_8 + 3 * kGroup * static_cast<std::size_t>(sphere) + lane);
+        };
+        const Vector between = Minus(center(pair.second), center(pair.first));
+        const V gap =
+            hn::Sub(hn::Sub(hn::Sqrt(Dot(between, between)), Constant(pair.first_radius_m)),
+                    Constant(pair.second_radius_m));
+        least = hn::Min(least, gap);
+      }
+    }
+    hn::Store(least, d, clearance_8 + lane);
+  }
+}
+
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace sidestep::planner::obstacle_kernels
 HWY_AFTER_NAMESPACE();
@@ -255,6 +285,7 @@ namespace sidestep::planner::obstacle_kernels {
 
 HWY_EXPORT(CentersOfGroup);
 HWY_EXPORT(TermsOfGroup);
+HWY_EXPORT(ClearanceOfGroup);
 
 void ComputeCenters(const Arm& arm, const double* q_8, double* axes_8, double* centers_8) {
   HWY_DYNAMIC_DISPATCH(CentersOfGroup)(arm, q_8, axes_8, centers_8);
@@ -263,6 +294,11 @@ void ComputeCenters(const Arm& arm, const double* q_8, double* axes_8, double* c
 void ComputeTerms(const Arm& arm, const double* axes_8, const double* centers_8,
                   const double* samples_8, double* terms_8) {
   HWY_DYNAMIC_DISPATCH(TermsOfGroup)(arm, axes_8, centers_8, samples_8, terms_8);
+}
+
+void ComputeClearance(const Arm& arm, const double* centers_8, const double* samples_8,
+                      double* clearance_8) {
+  HWY_DYNAMIC_DISPATCH(ClearanceOfGroup)(arm, centers_8, samples_8, clearance_8);
 }
 
 }  // namespace sidestep::planner::obstacle_kernels

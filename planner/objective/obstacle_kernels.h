@@ -9,7 +9,7 @@
 /// The SIMD half of ObstacleObjective: plain structs and functions, compiled for several
 /// instruction sets. A lane is a configuration, so that no sum crosses lanes, and every instruction
 /// set gives the same bits, whatever the C library: sines and cosines are computed here.
-/// Only ObstacleObjective includes this file.
+/// Only ArmGroup and those who work on one include this file.
 namespace sidestep::planner::obstacle_kernels {
 
 /// So many configurations are worked on together, on every machine. Arrays named `..._8` below hold
@@ -25,10 +25,10 @@ struct Arm {
   };
   struct Sphere {
     std::array<double, 3> p_LS{};
-    double radius_m = 0;
   };
   struct Hinge {
     int sphere = 0, link = 0;
+    double radius_m = 0;
     double reach_m = 0;  ///< active where the field is nearer than this
   };
   struct SpherePair {
@@ -65,5 +65,10 @@ void ComputeCenters(const Arm& arm, const double* q_8, double* axes_8, double* c
 /// @param terms_8 num_terms() receive the answer.
 void ComputeTerms(const Arm& arm, const double* axes_8, const double* centers_8,
                   const double* samples_8, double* terms_8);
+
+/// @param clearance_8 [m] of each configuration the least of all samples less their spheres' radii
+/// and of all gaps between the links of link_hinges; infinite without any.
+void ComputeClearance(const Arm& arm, const double* centers_8, const double* samples_8,
+                      double* clearance_8);
 
 }  // namespace sidestep::planner::obstacle_kernels

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "sidestep/planner/objective/obstacle_kernels.h"
+#include "sidestep/planner/objective/arm_group.h"
 #include "sidestep/robot/robot_model.h"
 #include "sidestep/sdf/aligned_vector.h"
 #include "sidestep/sdf/distance_field.h"
@@ -62,11 +62,8 @@ class ObstacleObjective {
                 ObstacleQuadratics& quadratics);
 
  private:
-  void SampleField(const sdf::FieldSlice& slice, std::size_t lane);
-
-  obstacle_kernels::Arm arm_;
-  // Of the configurations that are worked on, as in obstacle_kernels.h.
-  sdf::AlignedVector<double> q_8_, axes_8_, centers_8_, samples_8_, terms_8_;
+  ArmGroup group_;
+  sdf::AlignedVector<double> terms_8_;  // as in obstacle_kernels.h
 };
 
 /// What the costs themselves (ObstacleHinge) say of one configuration: the readable reference.
