@@ -59,10 +59,8 @@ class StepJudge {
 
 }  // namespace
 
-LevenbergMarquardt::LevenbergMarquardt(TrajectoryObjective& objective)
-    : objective_(objective),
-      present_(objective.MakeQuadratic()),
-      candidate_(objective.MakeQuadratic()) {
+LevenbergMarquardt::LevenbergMarquardt(TrajectoryObjective& objective, Ending ending)
+    : objective_(objective), ending_(ending), present_(objective.MakeQuadratic()) {
   const std::size_t size = present_.vector_size();
   scale_.assign(size, 0.0);
   diagonal_.assign(size, 0.0);
@@ -117,6 +115,10 @@ SolveOutcome LevenbergMarquardt::Solve(int max_iterations, double function_toler
   for (;; ++outcome.iterations) {
     if (outcome.iterations >= max_iterations) return outcome;
     if ((is_new && LargestGradient() <= kGradientTolerance) || radius < kMinRadius) break;
+    if (ending_ == Ending::kSooner && is_new &&
+        objective_.MostDecrease(present_) <= function_tolerance * cost) {
+      break;
+    }
     is_new = false;
 
     ChooseDamping(radius);
@@ -135,22 +137,30 @@ SolveOutcome LevenbergMarquardt::Solve(int max_iterations, double function_toler
       continue;
     }
     num_invalid = 0;
+    if (ending_ == Ending::kSooner && predicted <= function_tolerance * cost) break;
 
     for (int k = 0; k < num_free; ++k) {
       for (int i = 0; i < D; ++i) {
         x_next(i, first + k) = x(i, first + k) + step_[static_cast<std::size_t>(k * stride + i)];
       }
     }
-    objective_.Evaluate(x_next, candidate_);
-    const double cost_next = candidate_.cost.total();
+    if (!candidate_) candidate_.emplace(objective_.MakeQuadratic());
+    objective_.Evaluate(x_next, *candidate_);
+    const double cost_next = candidate_->cost.total();
     const auto free_part = [&](const Eigen::MatrixXd& of) { return of.rightCols(num_free); };
     const double moved = (free_part(x_next) - free_part(x)).norm();
-    if (moved <= kParameterTolerance * (free_part(x).norm() + kParameterTolerance)) break;
-    if (std::abs(cost - cost_next) <= function_tolerance * cost) break;
+    if (moved <= kParameterTolerance * (free_part(x).norm() + kParameterTolerance) ||
+        std::abs(cost - cost_next) <= function_tolerance * cost) {
+      if (ending_ == Ending::kSooner && cost_next < least) {
+        states = x_next;
+        cost_ = candidate_->cost;
+      }
+      break;
+    }
 
     const double quality = judge.Quality(cost_next, predicted);
     if (quality > kLeastQuality) {
-      std::swap(present_, candidate_);
+      std::swap(present_, *candidate_);
       x.swap(x_next);
       cost = cost_next;
       is_new = true;

@@ -54,6 +54,12 @@ void TrajectoryObjective::Restart(const Trajectory& initial) {
     priors_.push_back({k, k == 0 ? x_start_ : x, *options_.sigma_fixed});
   }
   priors_.push_back({num_states() - 1, x_goal_, options_.sigma_goal});
+  std::vector<double> information(static_cast<std::size_t>(num_states() - first_free_), 0.0);
+  for (const Prior& prior : priors_) {
+    information[static_cast<std::size_t>(prior.state - first_free_)] +=
+        1 / (prior.sigma * prior.sigma);
+  }
+  bound_.emplace(step_s_, options_.qc, information, /*follows_fixed=*/first_free_ > 0);
 }
 
 void TrajectoryObjective::Evaluate(const Eigen::MatrixXd& states, ChainQuadratic& quadratic) {
@@ -123,41 +129,65 @@ void TrajectoryObjective::AddObstacles(int k, int block, ChainQuadratic& quadrat
 // Of the interval that ends at state k: the GP prior, and the limits within.
 void TrajectoryObjective::AddInterval(const Eigen::MatrixXd& states, int k, int block,
                                       ChainQuadratic& quadratic) const {
-  const int height = 2 * quadratic.stride();
-  double* const far_panel = quadratic.panel(block);
-  double* const far_gradient = quadratic.gradient(block);
+  const double* const near = states.col(k - 1).data();
+  const double* const far = states.col(k).data();
   for (int i = 0; i < n_; ++i) {
-    const Eigen::Vector4d x(states(i, k - 1), states(n_ + i, k - 1), states(i, k),
-                            states(n_ + i, k));
-    JointQuadratic joint = gp_.At(x);
-    quadratic.cost.gp += joint.cost;
-    if (limits_) {
-      joint.cost = 0;
-      const LimitWeights& weights = limits_->weights;
-      if (weights.velocity > 0) {
-        AddMidVelocityLimit(step_s_, limits_->upper(n_ + i), weights.velocity, x, joint);
+    const std::array<double, 4> x = {near[i], near[n_ + i], far[i], far[n_ + i]};
+    std::array<double, 4> gradient;
+    quadratic.cost.gp += gp_.At(x, gradient);
+    AddJoint(gradient, gp_.hessian(), i, block, quadratic);
+    if (!limits_) continue;
+    const LimitWeights& weights = limits_->weights;
+    const auto add = [&](const LimitTerm& term) {
+      if (term.residual == 0) return;
+      quadratic.cost.limits += 0.5 * term.residual * term.residual;
+      std::array<double, 4> slope_residual;
+      Eigen::Matrix4d hessian;
+      for (std::size_t a = 0; a < 4; ++a) {
+        slope_residual[a] = term.residual * term.slope[a];
+        for (std::size_t b = 0; b < 4; ++b) hessian(a, b) = term.slope[a] * term.slope[b];
       }
-      if (weights.acceleration > 0) {
-        AddAccelerationLimit(step_s_, limits_->a_max(i), weights.acceleration, x, joint);
-      }
-      quadratic.cost.limits += joint.cost;
+      AddJoint(slope_residual, hessian, i, block, quadratic);
+    };
+    if (weights.velocity > 0) {
+      add(MidVelocityLimit(step_s_, limits_->upper(n_ + i), weights.velocity, x));
     }
-    for (int a = 2; a < 4; ++a) {
-      far_gradient[(a - 2) * n_ + i] += joint.gradient(a);
-      for (int b = 2; b <= a; ++b) {
-        far_panel[((b - 2) * n_ + i) * height + (a - 2) * n_ + i] += joint.hessian(a, b);
-      }
-    }
-    if (block == 0) continue;
-    for (int b = 0; b < 2; ++b) {
-      quadratic.gradient(block - 1)[b * n_ + i] += joint.gradient(b);
-      double* const column = quadratic.panel(block - 1) + (b * n_ + i) * height;
-      for (int a = b; a < 2; ++a) column[a * n_ + i] += joint.hessian(a, b);
-      for (int a = 2; a < 4; ++a) {
-        column[quadratic.stride() + (a - 2) * n_ + i] += joint.hessian(a, b);
-      }
+    if (weights.acceleration > 0) {
+      add(AccelerationLimitAtBegin(step_s_, limits_->a_max(i), weights.acceleration, x));
+      add(AccelerationLimitAtEnd(step_s_, limits_->a_max(i), weights.acceleration, x));
     }
   }
+}
+
+// A quadratic in joint i's (q, v, q, v) at block - 1 and block; what concerns a fixed state is left
+// out.
+void TrajectoryObjective::AddJoint(const std::array<double, 4>& gradient,
+                                   const Eigen::Matrix4d& hessian, int i, int block,
+                                   ChainQuadratic& quadratic) const {
+  const int height = 2 * quadratic.stride();
+  double* const far_gradient = quadratic.gradient(block);
+  far_gradient[i] += gradient[2];
+  far_gradient[n_ + i] += gradient[3];
+  double* const far_q = quadratic.panel(block) + i * height;
+  double* const far_v = far_q + n_ * height;
+  far_q[i] += hessian(2, 2);
+  far_q[n_ + i] += hessian(3, 2);
+  far_v[n_ + i] += hessian(3, 3);
+  if (block == 0) return;
+  double* const near_gradient = quadratic.gradient(block - 1);
+  near_gradient[i] += gradient[0];
+  near_gradient[n_ + i] += gradient[1];
+  double* const near_q = quadratic.panel(block - 1) + i * height;
+  double* const near_v = near_q + n_ * height;
+  near_q[i] += hessian(0, 0);
+  near_q[n_ + i] += hessian(1, 0);
+  near_v[n_ + i] += hessian(1, 1);
+  double* const below_q = near_q + quadratic.stride();
+  double* const below_v = near_v + quadratic.stride();
+  below_q[i] += hessian(2, 0);
+  below_q[n_ + i] += hessian(3, 0);
+  below_v[i] += hessian(2, 1);
+  below_v[n_ + i] += hessian(3, 1);
 }
 
 void TrajectoryObjective::AddStateLimits(const Eigen::MatrixXd& states, int k, int block,

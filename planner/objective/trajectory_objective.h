@@ -13,6 +13,7 @@
 #include "sidestep/planner/objective/chain_quadratic.h"
 #include "sidestep/planner/objective/interval_quadratic.h"
 #include "sidestep/planner/objective/obstacle_objective.h"
+#include "sidestep/planner/objective/smoothness_bound.h"
 #include "sidestep/planner/planner.h"
 #include "sidestep/robot/robot_model.h"
 #include "sidestep/sdf/distance_field.h"
@@ -45,6 +46,11 @@ class TrajectoryObjective {
   /// @param states 2n x K, column k = (q_k, v_k).
   void Evaluate(const Eigen::MatrixXd& states, ChainQuadratic& quadratic);
 
+  /// At most so much can a step lower the quadratic of the last evaluation.
+  double MostDecrease(const ChainQuadratic& quadratic) const {
+    return bound_->MostDecrease(quadratic);
+  }
+
   /// In parts, for solvers that assemble for themselves: Look, then the step of each free state k,
   /// which is all that is said of state k and of the interval before it, but for its priors.
   void Look(const Eigen::MatrixXd& states);
@@ -69,6 +75,8 @@ class TrajectoryObjective {
   void AddObstacles(int k, int block, ChainQuadratic& quadratic);
   void AddInterval(const Eigen::MatrixXd& states, int k, int block,
                    ChainQuadratic& quadratic) const;
+  void AddJoint(const std::array<double, 4>& gradient, const Eigen::Matrix4d& hessian, int i,
+                int block, ChainQuadratic& quadratic) const;
   void AddStateLimits(const Eigen::MatrixXd& states, int k, int block,
                       ChainQuadratic& quadratic) const;
 
@@ -81,6 +89,7 @@ class TrajectoryObjective {
   std::vector<Prior> priors_;
   std::optional<SoftLimits> limits_;
   GpInterval gp_;
+  std::optional<SmoothnessBound> bound_;
 
   ObstacleObjective obstacles_;
   std::vector<Place> places_;           // in the order of time

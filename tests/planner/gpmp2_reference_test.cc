@@ -146,7 +146,7 @@ class Gpmp2Reference : public ::testing::Test {
     objective.Restart(line);
     Eigen::MatrixXd states(14, kNumStates);
     states << line.q, line.v;
-    LevenbergMarquardt solver(objective);
+    LevenbergMarquardt solver(objective, LevenbergMarquardt::Ending::kLikeCeres);
     solver.Solve(200, 1e-12, states);  // to where only the kinks of the field are left
     const double cost = solver.cost().total();
     EXPECT_NEAR(CostOf({line.t_s, states.topRows(7), states.bottomRows(7)}, options).total(), cost,
