@@ -74,8 +74,7 @@ void ResolvePlanner(scenarios::Scenario& scenario) {
   scenario.planner_parameters = resolved;
 }
 
-std::unique_ptr<planner::Planner> MakePlanner(const scenarios::Scenario& scenario,
-                                              const robot::RobotModel& robot) {
+planner::PlannerSettings SettingsOf(const scenarios::Scenario& scenario) {
   planner::PlannerSettings settings;
   settings.epsilon_m = scenario.epsilon_m;
   settings.velocity_scale = scenario.velocity_scale;
@@ -83,6 +82,10 @@ std::unique_ptr<planner::Planner> MakePlanner(const scenarios::Scenario& scenari
   settings.position_limits = scenario.position_limits;
   settings.velocity_limits = scenario.velocity_limits;
   settings.acceleration_limits = scenario.acceleration_limits;
+  return settings;
+}
+
+planner::Parameters ParametersOf(const scenarios::Scenario& scenario) {
   planner::Parameters parameters;
   const std::vector<Parameter> declared = planner::KindOfPlanner(scenario.planner).parameters;
   for (const auto& [name, text] : scenario.planner_parameters) {
@@ -90,7 +93,13 @@ std::unique_ptr<planner::Planner> MakePlanner(const scenarios::Scenario& scenari
     parameters[name] = parameter == nullptr ? planner::ParameterValue(text)
                                             : planner::ParseValue(*parameter, text);
   }
-  return planner::MakePlanner(scenario.planner, robot, settings, parameters);
+  return parameters;
+}
+
+std::unique_ptr<planner::Planner> MakePlanner(const scenarios::Scenario& scenario,
+                                              const robot::RobotModel& robot) {
+  return planner::MakePlanner(scenario.planner, robot, SettingsOf(scenario),
+                              ParametersOf(scenario));
 }
 
 double HorizonOf(const scenarios::Scenario& scenario, const planner::Planner& planner) {

@@ -2,7 +2,9 @@
 
 #include <memory>
 
+#include "sidestep/planner/parameters.h"
 #include "sidestep/planner/planner.h"
+#include "sidestep/planner/planner_settings.h"
 #include "sidestep/robot/robot_model.h"
 #include "sidestep/scenarios/scenario.h"
 
@@ -13,6 +15,11 @@ namespace sidestep::bench {
 /// instead, which does not have it.
 /// @throws InputError naming the scenario's file, line and key.
 void ResolvePlanner(scenarios::Scenario& scenario);
+
+/// What a scenario asks of its planner, and sets of it.
+planner::PlannerSettings SettingsOf(const scenarios::Scenario& scenario);
+/// @throws std::invalid_argument for an unknown planner or a text that is no value.
+planner::Parameters ParametersOf(const scenarios::Scenario& scenario);
 
 /// The planner that a scenario asks for.
 /// @throws std::invalid_argument for an unknown planner, or one of which this cannot be set.

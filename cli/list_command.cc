@@ -24,7 +24,8 @@ namespace {
 
 struct Item {
   std::string name;
-  std::string note = "";  // further lines are indented already
+  std::string note = "";     // further lines are indented already
+  std::string details = "";  // likewise; for who asks for its kind
 };
 
 struct Kind {
@@ -47,11 +48,10 @@ std::string ChoicesOf(const std::string& scenario_file) {
   return lines;
 }
 
-// With a line for each parameter that it declares.
-std::string MeaningOfPlanner(const std::string& name) {
-  const planner::PlannerKind kind = planner::KindOfPlanner(name);
-  std::string lines = kind.meaning;
-  for (const planner::Parameter& one : kind.parameters) {
+// A line for each parameter that a planner declares.
+std::string ParametersOf(const std::string& planner) {
+  std::string lines;
+  for (const planner::Parameter& one : planner::KindOfPlanner(planner).parameters) {
     const std::string bounds = planner::BoundsOf(one);
     lines += fmt::format("\n    --set planner.{}={}{}  {}{}: {}", one.name,
                          planner::ToText(one.default_value),
@@ -71,7 +71,8 @@ class Catalogue {
     for (const sdf::Knowledge one : sdf::kAllKnowledge) {
       knowledge.items.push_back({ToString(one)});
     }
-    kinds_.push_back({"planners", Items(planner::PlannerNames(), &MeaningOfPlanner)});
+    kinds_.push_back({"planners", Items(planner::PlannerNames(), &planner::MeaningOfPlanner)});
+    for (Item& planner : kinds_.back().items) planner.details = ParametersOf(planner.name);
     kinds_.push_back({"predictors", Items(sdf::PredictorNames(), &sdf::MeaningOfPredictor)});
     kinds_.push_back({"sensors", Items(sim::SensorNames(), &sim::MeaningOfSensor)});
     Kind& metrics = kinds_.emplace_back(Kind{"metrics", {}});
@@ -114,12 +115,14 @@ class Catalogue {
   std::vector<std::string> faults_;
 };
 
-void PrintItems(const Kind& kind, const char* indent) {
+void PrintItems(const Kind& kind, bool is_alone) {
+  const char* const indent = is_alone ? "" : "  ";
   for (const Item& item : kind.items) {
-    if (item.note.empty()) {
+    const std::string text = item.note + (is_alone ? item.details : "");
+    if (text.empty()) {
       Print("{}{}\n", indent, item.name);
     } else {
-      Print("{}{:<24} {}\n", indent, item.name, item.note);
+      Print("{}{:<24} {}\n", indent, item.name, text);
     }
   }
 }
@@ -137,7 +140,7 @@ int List(const std::string& kind_name, bool only_names) {
       for (const Item& item : kind.items) Print("{}\n", item.name);
     } else {
       if (kind_name.empty()) Print("{}\n", kind.title);
-      PrintItems(kind, kind_name.empty() ? "  " : "");
+      PrintItems(kind, !kind_name.empty());
     }
   }
   if (!found) {

@@ -55,6 +55,7 @@ int Run(int argc, char** argv) {
   sidestep::cli::AddReproduceCommand(line);
   sidestep::cli::AddStudyCommand(line);
   sidestep::cli::AddAuditCommand(line);
+  sidestep::cli::AddBenchCommand(line);
   sidestep::cli::AddListCommand(line);
   sidestep::cli::AddDoctorCommand(line);
   sidestep::cli::AddFieldCommand(line);

@@ -17,9 +17,6 @@
 namespace sidestep::planner {
 namespace {
 
-// Soft costs give way a little: they begin this far inside the robot's position limits.
-constexpr double kPositionMargin_rad = 0.02;
-
 // This class owns the cost functions, so that intervals may share one.
 ceres::Problem::Options ProblemOptions() {
   ceres::Problem::Options options;
@@ -35,8 +32,6 @@ GpProblem::GpProblem(const robot::RobotModel& robot, const PlanRequest& request,
     : robot_(robot),
       t_s_(initial.t_s),
       step_s_(request.step_s),
-      q_start_(request.q_start),
-      q_goal_(request.q_goal),
       first_free_(options.sigma_fixed ? 0 : request.num_fixed),
       states_(2 * robot.num_joints(), request.num_states),
       hinge_(robot, *request.field, options.epsilon_m, options.sigma_obs, options.self_epsilon_m,
@@ -81,23 +76,15 @@ GpProblem::GpProblem(const robot::RobotModel& robot, const PlanRequest& request,
   }
 }
 
-void GpProblem::AddLimits(const LimitWeights& weights, double velocity_scale,
-                          double acceleration_scale) {
+void GpProblem::AddLimits(const SoftLimits& limits) {
   const int n = robot_.num_joints(), K = static_cast<int>(t_s_.size());
-  Eigen::VectorXd lower(2 * n), upper(2 * n), weight(2 * n), a_max(n);
-  for (int i = 0; i < n; ++i) {
-    const robot::JointLimits& limits = robot_.limits()[i];
-    lower(i) = std::min({limits.q_min + kPositionMargin_rad, q_start_(i), q_goal_(i)});
-    upper(i) = std::max({limits.q_max - kPositionMargin_rad, q_start_(i), q_goal_(i)});
-    upper(n + i) = velocity_scale * limits.v_max;
-    lower(n + i) = -upper(n + i);
-    a_max(i) = acceleration_scale * limits.a_max;
-  }
+  const LimitWeights& weights = limits.weights;
+  Eigen::VectorXd weight(2 * n);
   weight << Eigen::VectorXd::Constant(n, weights.position),
       Eigen::VectorXd::Constant(n, weights.velocity);
 
   if (weights.position > 0 || weights.velocity > 0) {
-    costs_.push_back(std::make_unique<StateLimitCost>(lower, upper, weight));
+    costs_.push_back(std::make_unique<StateLimitCost>(limits.lower, limits.upper, weight));
     const ceres::CostFunction* const cost = costs_.back().get();
     for (int k = first_free_; k < K; ++k) AddTerm(cost, k, &PlanCost::limits);
   }
@@ -109,11 +96,11 @@ void GpProblem::AddLimits(const LimitWeights& weights, double velocity_scale,
   };
   if (weights.velocity > 0) {
     add_to_intervals(
-        std::make_unique<MidVelocityLimitCost>(step_s_, upper.tail(n), weight.tail(n)));
+        std::make_unique<MidVelocityLimitCost>(step_s_, limits.upper.tail(n), weight.tail(n)));
   }
   if (weights.acceleration > 0) {
     add_to_intervals(std::make_unique<AccelerationLimitCost>(
-        step_s_, a_max, Eigen::VectorXd::Constant(n, weights.acceleration)));
+        step_s_, limits.a_max, Eigen::VectorXd::Constant(n, weights.acceleration)));
   }
 }
 

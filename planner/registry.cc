@@ -50,6 +50,15 @@ std::unique_ptr<Planner> MakePlanner(const std::string& name, const robot::Robot
   return kind.make(robot, settings, Complete(kind.parameters, parameters));
 }
 
+std::unique_ptr<Planner> MakePlannerLeavingOut(const std::string& name,
+                                               const robot::RobotModel& robot,
+                                               const PlannerSettings& settings,
+                                               Parameters parameters) {
+  const Parameters all = Complete(KindOfPlanner(name).parameters, {});
+  std::erase_if(parameters, [&](const auto& one) { return all.count(one.first) == 0; });
+  return MakePlanner(name, robot, settings, parameters);
+}
+
 std::string CeresVersion() { return CERES_VERSION_STRING; }
 
 }  // namespace sidestep::planner

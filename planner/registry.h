@@ -29,4 +29,10 @@ std::unique_ptr<Planner> MakePlanner(const std::string& name, const robot::Robot
                                      const PlannerSettings& settings,
                                      const Parameters& parameters = {});
 
+/// The same with what it has of `parameters`: for problems that are put to planners of all kinds.
+std::unique_ptr<Planner> MakePlannerLeavingOut(const std::string& name,
+                                               const robot::RobotModel& robot,
+                                               const PlannerSettings& settings,
+                                               Parameters parameters);
+
 }  // namespace sidestep::planner

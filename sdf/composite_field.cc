@@ -61,7 +61,7 @@ CompositeField::CompositeField(std::shared_ptr<const SdfGrid> static_W,
   }
 }
 
-PlacedComposite CompositeField::At(EpisodeTime t) const {
+PlacedComposite CompositeField::PlacedAt(EpisodeTime t) const {
   std::vector<PlacedObject> placed;
   placed.reserve(objects_.size());
   for (std::size_t n = 0; n < objects_.size(); ++n) {
@@ -75,13 +75,17 @@ PlacedComposite CompositeField::At(EpisodeTime t) const {
   return {*static_W_, placed, max_distance_m_, &exact_};
 }
 
+std::unique_ptr<const FieldSlice> CompositeField::At(EpisodeTime t) const {
+  return std::make_unique<PlacedComposite>(PlacedAt(t));
+}
+
 DistanceSample CompositeField::Sample(const Eigen::Vector3d& p_WQ, EpisodeTime t) const {
-  return At(t).Sample(p_WQ);
+  return PlacedAt(t).Sample(p_WQ);
 }
 
 void CompositeField::SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime t,
                                 DistanceSamples& samples) const {
-  At(t).SampleMany(p_WQ, samples);
+  PlacedAt(t).SampleMany(p_WQ, samples);
 }
 
 }  // namespace sidestep::sdf

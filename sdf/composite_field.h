@@ -51,9 +51,9 @@ class CompositeField final : public DistanceField {
                   DistanceSamples& samples) const override;
   double max_distance_m() const override { return max_distance_m_; }
 
-  /// The same at one time, for those who have many questions about it: asks each object for its
-  /// pose once. This field must outlive it.
-  PlacedComposite At(EpisodeTime t) const;
+  /// The same at one time: asks each object for its pose once. This field must outlive it.
+  PlacedComposite PlacedAt(EpisodeTime t) const;
+  std::unique_ptr<const FieldSlice> At(EpisodeTime t) const override;
 
  private:
   std::shared_ptr<const SdfGrid> static_W_;

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 
 #include "sidestep/core/time.h"
+#include "sidestep/sdf/point_block.h"
 
 namespace sidestep::sdf {
 
@@ -18,6 +20,18 @@ struct DistanceSamples {
   Eigen::VectorXd distance_m;   ///< shape S
   Eigen::Matrix3Xd gradient_W;  ///< 3 x S
   int num_outside = 0;          ///< how many points lay outside what was mapped
+};
+
+/// A field at one moment, for those who have many questions about it: what depends on the time
+/// alone is worked out once. Immutable; safe from many threads, and never throws.
+class FieldSlice {
+ public:
+  virtual ~FieldSlice() = default;
+
+  /// Fills what the field says of the block's points: to the bit what SampleMany does.
+  /// @param block 1 to PointBlock::kSize finite points, padded (see PointBlock::Pad).
+  /// @return how many of them lie outside what was mapped.
+  virtual int SampleBlock(PointBlock& block) const = 0;
 };
 
 /// The signed distance phi(p, t) from a point to the nearest obstacle, as believed for time t.
@@ -40,6 +54,9 @@ class DistanceField {
   /// Samples S points at the same time; sizes `samples` as needed. Equal to S single calls.
   virtual void SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime t,
                           DistanceSamples& samples) const = 0;
+
+  /// The field at time `t`. The field must outlive it.
+  virtual std::unique_ptr<const FieldSlice> At(EpisodeTime t) const;
 
   /// No answer is above this [m]; where an answer equals it, its gradient is zero.
   virtual double max_distance_m() const = 0;

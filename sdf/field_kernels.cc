@@ -13,6 +13,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace sidestep::sdf::field_kernels {
 namespace HWY_NAMESPACE {
+namespace {  // position-independent code inlines nothing that others could replace
 namespace hn = hwy::HWY_NAMESPACE;
 
 using D = hn::CappedTag<double, 8>;
@@ -21,7 +22,7 @@ using M = hn::Mask<D>;
 using D32 = hn::Rebind<std::int32_t, D>;
 using D64 = hn::Rebind<std::int64_t, D>;
 constexpr std::size_t kLanes = hn::MaxLanes(D());
-static_assert(kBlockSize % kLanes == 0);
+static_assert(Block::kVector % kLanes == 0);
 
 struct Point {
   V x, y, z;
@@ -213,6 +214,7 @@ void FindNearBoxes(const Boxes& boxes, const std::array<float, 3>& p_m, float re
   }
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace sidestep::sdf::field_kernels
 HWY_AFTER_NAMESPACE();

@@ -7,6 +7,7 @@
 
 #include "sidestep/core/solid.h"
 #include "sidestep/sdf/map/sdf_grid.h"
+#include "sidestep/sdf/point_block.h"
 
 /// The SIMD half of PlacedComposite: plain structs and four functions, compiled for several
 /// instruction sets. Each does for a block of points, a vector at a time, what SdfGrid::Sample and
@@ -36,16 +37,9 @@ struct Placed {
   double growth_m = 0;  ///< taken off each distance
 };
 
-inline constexpr std::size_t kBlockSize = 64;
-
-/// Points and what a field says of them, as a structure of arrays. All kBlockSize points must be
-/// set: the functions below work on whole vectors, and round `count` up.
-struct alignas(64) Block {
-  double x[kBlockSize], y[kBlockSize], z[kBlockSize];
-  double distance_m[kBlockSize];
-  double gradient_x[kBlockSize], gradient_y[kBlockSize], gradient_z[kBlockSize];
-  std::size_t count = 0;  // last: each array begins at a cache line
-};
+/// The functions below work on whole vectors, and round `count` up: blocks must be padded.
+using Block = PointBlock;
+inline constexpr std::size_t kBlockSize = Block::kSize;
 
 /// Samples a grid that does not move, clamped. @return how many of the points lie outside it.
 int SampleStatic(const Grid& grid, double max_distance_m, Block& block);

@@ -23,4 +23,8 @@ void GridField::SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime,
   PlacedComposite(*grid_W_, {}, max_distance_m_).SampleMany(p_WQ, samples);
 }
 
+std::unique_ptr<const FieldSlice> GridField::At(EpisodeTime) const {
+  return std::make_unique<PlacedComposite>(*grid_W_, std::vector<PlacedObject>{}, max_distance_m_);
+}
+
 }  // namespace sidestep::sdf

@@ -16,6 +16,7 @@ class GridField final : public DistanceField {
   DistanceSample Sample(const Eigen::Vector3d& p_WQ, EpisodeTime t) const override;
   void SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime t,
                   DistanceSamples& samples) const override;
+  std::unique_ptr<const FieldSlice> At(EpisodeTime t) const override;
   double max_distance_m() const override { return max_distance_m_; }
 
  private:

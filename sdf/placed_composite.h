@@ -53,7 +53,7 @@ struct SampleColumns {
 /// box; many are tested 4 to 16 at a time, as the machine has it, against the answer so far, and
 /// their boxes are tight. Batches go through SIMD kernels, a vector of points at a time, and answer
 /// to the last bit what single queries do, on every machine.
-class PlacedComposite {
+class PlacedComposite final : public FieldSlice {
  public:
   /// From how many objects on tight bounds are worth their cost.
   static constexpr std::size_t kMany = 16;
@@ -67,6 +67,7 @@ class PlacedComposite {
   /// Equal to S single calls.
   void SampleMany(const Eigen::Matrix3Xd& p_WQ, DistanceSamples& samples) const;
   void SampleMany(const PointColumns& p_WQ, SampleColumns& samples) const;
+  int SampleBlock(PointBlock& block) const override;
 
  private:
   struct Object {
@@ -81,7 +82,6 @@ class PlacedComposite {
   static bool CanBeNearer(const Object& object, double squared_m2, double distance_m);
   static void Lower(const Object& object, const Eigen::Vector3d& p_WQ, DistanceSample& sample);
   void LowerByMany(const Eigen::Vector3d& p_WQ, DistanceSample& sample) const;
-  int SampleBlock(field_kernels::Block& block) const;
   static void LowerEach(const Object& object, field_kernels::Block& block);
 
   const SdfGrid& static_W_;

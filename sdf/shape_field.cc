@@ -4,7 +4,34 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sidestep/sdf/block_samples.h"
+
 namespace sidestep::sdf {
+namespace {
+
+// The shapes where they are at one moment.
+class ShapeSlice final : public FieldSlice {
+ public:
+  ShapeSlice(const ExactSolids& still, std::vector<ExactShape> moved, double max_distance_m)
+      : still_(still), moved_(std::move(moved)), max_distance_m_(max_distance_m) {}
+
+  int SampleBlock(PointBlock& block) const override {
+    for (std::size_t n = 0; n < block.count; ++n) {
+      DistanceSample sample{max_distance_m_, Eigen::Vector3d::Zero(), true};
+      still_.Lower(PointOf(block, n), sample);
+      for (const ExactShape& shape : moved_) shape.Lower(PointOf(block, n), sample);
+      SetSample(sample, n, block);
+    }
+    return 0;
+  }
+
+ private:
+  const ExactSolids& still_;
+  std::vector<ExactShape> moved_;
+  double max_distance_m_;
+};
+
+}  // namespace
 
 ShapeField::ShapeField(const StaticSolids& still, std::vector<MovingShape> moving,
                        double max_distance_m)
@@ -37,9 +64,7 @@ void ShapeField::SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime t,
   samples.distance_m.resize(p_WQ.cols());
   samples.gradient_W.resize(3, p_WQ.cols());
   samples.num_outside = 0;
-  std::vector<ExactShape> moved;
-  moved.reserve(moving_.size());
-  for (const MovingShape& moving : moving_) moved.emplace_back(moving.shape, moving.X_WO(t));
+  const std::vector<ExactShape> moved = MovedTo(t);
   for (Eigen::Index s = 0; s < p_WQ.cols(); ++s) {
     DistanceSample sample{max_distance_m_, Eigen::Vector3d::Zero(), true};
     still_.Lower(p_WQ.col(s), sample);
@@ -47,6 +72,17 @@ void ShapeField::SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime t,
     samples.distance_m(s) = sample.distance_m;
     samples.gradient_W.col(s) = sample.gradient_W;
   }
+}
+
+std::unique_ptr<const FieldSlice> ShapeField::At(EpisodeTime t) const {
+  return std::make_unique<ShapeSlice>(still_, MovedTo(t), max_distance_m_);
+}
+
+std::vector<ExactShape> ShapeField::MovedTo(EpisodeTime t) const {
+  std::vector<ExactShape> moved;
+  moved.reserve(moving_.size());
+  for (const MovingShape& moving : moving_) moved.emplace_back(moving.shape, moving.X_WO(t));
+  return moved;
 }
 
 }  // namespace sidestep::sdf

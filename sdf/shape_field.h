@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "sidestep/core/pose.h"
@@ -34,9 +35,12 @@ class ShapeField final : public DistanceField {
   DistanceSample Sample(const Eigen::Vector3d& p_WQ, EpisodeTime t) const override;
   void SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime t,
                   DistanceSamples& samples) const override;
+  std::unique_ptr<const FieldSlice> At(EpisodeTime t) const override;
   double max_distance_m() const override { return max_distance_m_; }
 
  private:
+  std::vector<ExactShape> MovedTo(EpisodeTime t) const;
+
   ExactSolids still_;
   std::vector<MovingShape> moving_;
   double max_distance_m_;

@@ -77,7 +77,7 @@ StaticSolids Floor() { return {{}, {{Eigen::Vector3d::UnitZ(), 0.1}}}; }
 
 void Lazy(benchmark::State& state, int num_arms, const StaticSolids& exact) {
   const sdf::CompositeField composite = CubesInARoom(static_cast<int>(state.range(0)), exact);
-  const sdf::PlacedComposite field = composite.At(EpisodeTime(0));
+  const sdf::PlacedComposite field = composite.PlacedAt(EpisodeTime(0));
   const Eigen::Matrix3Xd p_WQ = ArmPoints(num_arms).transpose();
   for (auto _ : state) {
     for (Eigen::Index s = 0; s < p_WQ.cols(); ++s) {
@@ -89,7 +89,7 @@ void Lazy(benchmark::State& state, int num_arms, const StaticSolids& exact) {
 
 void LazyBatched(benchmark::State& state, int num_arms, const StaticSolids& exact) {
   const sdf::CompositeField composite = CubesInARoom(static_cast<int>(state.range(0)), exact);
-  const sdf::PlacedComposite field = composite.At(EpisodeTime(0));
+  const sdf::PlacedComposite field = composite.PlacedAt(EpisodeTime(0));
   const sdf::PointColumns p_WQ = ArmPoints(num_arms);
   sdf::SampleColumns samples;
   for (auto _ : state) {
@@ -102,7 +102,7 @@ void LazyBatched(benchmark::State& state, int num_arms, const StaticSolids& exac
 
 void Place(benchmark::State& state) {
   const sdf::CompositeField composite = CubesInARoom(static_cast<int>(state.range(0)));
-  for (auto _ : state) benchmark::DoNotOptimize(composite.At(EpisodeTime(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(composite.PlacedAt(EpisodeTime(0)));
 }
 
 void Objects(benchmark::internal::Benchmark* benchmark) {

@@ -22,6 +22,7 @@ class FrozenField final : public sdf::DistanceField {
                   sdf::DistanceSamples& samples) const override {
     field_->SampleMany(p_WQ, t_, samples);
   }
+  std::unique_ptr<const sdf::FieldSlice> At(EpisodeTime) const override { return field_->At(t_); }
   double max_distance_m() const override { return field_->max_distance_m(); }
 
  private:

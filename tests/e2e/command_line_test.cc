@@ -202,6 +202,14 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"AuditOutIsAFile",
                 {"audit", "hsr_walkway", "--out", SIDESTEP_PROGRAM},
                 {"--out", "cannot be made a folder"}},
+        Mistake{"BenchOfNothing", {"bench"}, {"bench: needs one of planner"}},
+        Mistake{"BenchOfAnUnknownPlanner",
+                {"bench", "planner", "--planners", "gpmp,chomp"},
+                {"--planners", "chomp"}},
+        Mistake{"BenchOfAnUnknownProblem",
+                {"bench", "planner", "--problems", "hsr,tsr"},
+                {"--problems", "tsr"}},
+        Mistake{"BenchOfNoPairs", {"bench", "planner", "--pairs", "0"}, {"--pairs"}},
         Mistake{"ListOfAnUnknownKind", {"list", "wishes"}, {"KIND: must be one of scenarios,"}},
         Mistake{"SensorWithoutItsSettings",
                 {"run", "hsr_walkway", "--set", "sensor.name=depth_camera"},
@@ -213,7 +221,7 @@ TEST(Help, NamesEveryCommandAndTheExitCodes) {
   EXPECT_EQ(finished.exit_code, 0);
   EXPECT_THAT(finished.out, HasSubstr("Exit codes"));
   for (const std::string command : {"run", "compare", "render", "list", "doctor", "reproduce",
-                                    "study", "audit", "field", "fci-server"}) {
+                                    "study", "audit", "bench", "field", "fci-server"}) {
     EXPECT_THAT(finished.out, HasSubstr("\n  " + command + " "));
     const Finished help = Sidestep({command, "--help"});
     EXPECT_EQ(help.exit_code, 0);

@@ -256,7 +256,7 @@ void CheckQueries(Input& input) {
     least_m(s) = LeastDistance_m(*scene.static_W, exact, at_t, scene.clamp_m, p_WQ.col(s));
   }
   const sdf::CompositeField field(scene.static_W, scene.objects, scene.clamp_m, exact);
-  const sdf::PlacedComposite placed = field.At(t);
+  const sdf::PlacedComposite placed = field.PlacedAt(t);
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     const OnlyTarget only(target);
     sdf::DistanceSamples batch;

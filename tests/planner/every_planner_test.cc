@@ -306,8 +306,8 @@ TEST(PlannerRegistry, NamesThePlannersThereAreWhenAskedForAnother) {
     FAIL() << "was accepted";
   } catch (const std::invalid_argument& error) {
     EXPECT_STREQ(error.what(),
-                 "unknown planner 'chomp'; there are: gauss_newton, gpmp, straight_line, "
-                 "hold_still");
+                 "unknown planner 'chomp'; there are: gauss_newton, gpmp, gpmp_ceres, gpmp_fast, "
+                 "straight_line, hold_still");
   }
 }
 

@@ -1,7 +1,7 @@
-// A published planning problem, evaluated and solved by GPMP2 on GTSAM (tests/support/
+// A published planning problem, evaluated and solved by GPMP2 on GTSAM (bench/planner_bench/
 // gpmp2_reference.h): every term of our objective has its value, and our solutions are no worse.
 
-#include "tests/support/gpmp2_reference.h"
+#include "sidestep/bench/planner_bench/gpmp2_reference.h"
 
 #include <ceres/solver.h>
 #include <gtest/gtest.h>
@@ -12,15 +12,17 @@
 #include <sstream>
 #include <string>
 
+#include "sidestep/planner/fast/levenberg_marquardt.h"
 #include "sidestep/planner/gp_problem.h"
+#include "sidestep/planner/objective/trajectory_objective.h"
 #include "sidestep/planner/planner.h"
 #include "sidestep/robot/robot_model.h"
 
 namespace sidestep::planner {
 namespace {
 
-using gpmp2_reference::kNumStates;
-using gpmp2_reference::kStep_s;
+using bench::gpmp2_reference::kNumStates;
+using bench::gpmp2_reference::kStep_s;
 
 // The two objectives of the reference: many weak obstacle costs, and few stiff ones. Start and goal
 // are both held by priors.
@@ -33,7 +35,9 @@ GpProblemOptions Sparse() {
 
 class Gpmp2Reference : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() { field_ = std::make_unique<gpmp2_reference::SteppedField>(); }
+  static void SetUpTestSuite() {
+    field_ = std::make_unique<bench::gpmp2_reference::SteppedField>();
+  }
   static void TearDownTestSuite() { field_.reset(); }
 
   static robot::RobotModel MakeWam() {
@@ -134,8 +138,24 @@ class Gpmp2Reference : public ::testing::Test {
     return cost;
   }
 
+  // The same by our own solver.
+  static double SolveFastFromStraightLine(const GpProblemOptions& options) {
+    const PlanRequest request = Request();
+    const Trajectory line = StraightLine();
+    TrajectoryObjective objective(wam_, request, line.t_s, options);
+    objective.Restart(line);
+    Eigen::MatrixXd states(14, kNumStates);
+    states << line.q, line.v;
+    LevenbergMarquardt solver(objective, LevenbergMarquardt::Ending::kLikeCeres);
+    solver.Solve(200, 1e-12, states);  // to where only the kinks of the field are left
+    const double cost = solver.cost().total();
+    EXPECT_NEAR(CostOf({line.t_s, states.topRows(7), states.bottomRows(7)}, options).total(), cost,
+                1e-9 * cost);
+    return cost;
+  }
+
   inline static const robot::RobotModel wam_ = MakeWam();
-  inline static std::unique_ptr<gpmp2_reference::SteppedField> field_;
+  inline static std::unique_ptr<bench::gpmp2_reference::SteppedField> field_;
 };
 
 TEST_F(Gpmp2Reference, ForwardKinematicsAtTheStartAgree) {
@@ -175,6 +195,11 @@ TEST_F(Gpmp2Reference, SolutionOfTheDenseObjectiveIsNoWorse) {
 // Dogleg.
 TEST_F(Gpmp2Reference, SolutionOfTheSparseObjectiveIsNoWorse) {
   EXPECT_LE(SolveFromStraightLine(Sparse()).total(), 657.075759139 * (1 + 1e-6));
+}
+
+TEST_F(Gpmp2Reference, FastSolutionsAreNoWorse) {
+  EXPECT_LE(SolveFastFromStraightLine(Dense()), 91.335371006 * (1 + 1e-6));
+  EXPECT_LE(SolveFastFromStraightLine(Sparse()), 657.075759139 * (1 + 1e-6));
 }
 
 }  // namespace

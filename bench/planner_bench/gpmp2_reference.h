@@ -10,8 +10,9 @@
 #include "sidestep/sdf/distance_field.h"
 #include "sidestep/sdf/map/distance_transform.h"
 #include "sidestep/sdf/map/sdf_grid.h"
+#include "sidestep/sdf/placed_composite.h"
 
-namespace sidestep::gpmp2_reference {
+namespace sidestep::bench::gpmp2_reference {
 
 // A planning problem that GPMP2 itself (github.com/borglab/gpmp2, tag gtsam4.2, on GTSAM 4.2.0)
 // solved and evaluated: a WAM reaches over a desk into a cabinet while a pillar moves by, one cell
@@ -59,10 +60,7 @@ class SteppedField final : public sdf::DistanceField {
   }
 
   sdf::DistanceSample Sample(const Eigen::Vector3d& p_WQ, EpisodeTime t) const override {
-    // Support times are sums of steps: rounded, they may stand a little after the step they mean.
-    const double step = std::ceil(t.seconds() / kStep_s - 1e-6);
-    const sdf::GridSample sample =
-        grids_[static_cast<std::size_t>(std::clamp(step, 0.0, kNumStates - 1.0))].Sample(p_WQ);
+    const sdf::GridSample sample = GridAt(t).Sample(p_WQ);
     if (!sample.in_grid) return {max_distance_m(), Eigen::Vector3d::Zero(), false};
     return {sample.distance_m, sample.gradient, true};
   }
@@ -80,10 +78,21 @@ class SteppedField final : public sdf::DistanceField {
     }
   }
 
+  std::unique_ptr<const sdf::FieldSlice> At(EpisodeTime t) const override {
+    return std::make_unique<sdf::PlacedComposite>(GridAt(t), std::vector<sdf::PlacedObject>{},
+                                                  max_distance_m());
+  }
+
   double max_distance_m() const override { return 10; }  // more than any reach: no clamp
 
  private:
+  const sdf::SdfGrid& GridAt(EpisodeTime t) const {
+    // Support times are sums of steps: rounded, they may stand a little after the step they mean.
+    const double step = std::ceil(t.seconds() / kStep_s - 1e-6);
+    return grids_[static_cast<std::size_t>(std::clamp(step, 0.0, kNumStates - 1.0))];
+  }
+
   std::vector<sdf::SdfGrid> grids_;
 };
 
-}  // namespace sidestep::gpmp2_reference
+}  // namespace sidestep::bench::gpmp2_reference

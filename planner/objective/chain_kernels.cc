@@ -1,0 +1,210 @@
+#include "sidestep/planner/objective/chain_kernels.h"
+
+#include <cmath>
+
+// Highway compiles what follows once for each instruction set, each time in a namespace of its own;
+// the end of the file picks one of them at run time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sidestep/planner/objective/chain_kernels.cc"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace sidestep::planner::chain_kernels {
+namespace HWY_NAMESPACE {
+namespace {  // position-independent code inlines nothing that others could replace
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<double, 8>;
+using V = hn::Vec<D>;
+constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
+constexpr int kVector = 8;  // strides are multiples of it
+
+int FirstRowOfVector(int row) { return row / kLanes * kLanes; }
+
+// to -= from * factor
+void Subtract(const double* from, double factor, int begin, int end, double* to) {
+  const D d;
+  const V f = hn::Set(d, factor);
+  for (int row = begin; row < end; row += kLanes) {
+    hn::Store(hn::Sub(hn::Load(d, to + row), hn::Mul(hn::Load(d, from + row), f)), d, to + row);
+  }
+}
+
+// In the order in which 8 lanes would add up.
+double DotProduct(const double* a, const double* b, int size) {
+  const D d;
+  V sums[kVector / kLanes];
+  for (V& sum : sums) sum = hn::Zero(d);
+  for (int row = 0; row < size; row += kVector) {
+    for (int part = 0; part < kVector / kLanes; ++part) {
+      const int at = row + part * kLanes;
+      sums[part] = hn::Add(sums[part], hn::Mul(hn::Load(d, a + at), hn::Load(d, b + at)));
+    }
+  }
+  HWY_ALIGN double lanes[kVector];
+  for (int part = 0; part < kVector / kLanes; ++part)
+    hn::Store(sums[part], d, lanes + part * kLanes);
+  return ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) +
+         ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]));
+}
+
+// One block column, from `panel` into `L`, less what the column before takes off it.
+void CopyPanel(const Chain& chain, const double* panel, const double* L_before, double* L) {
+  const D d;
+  const int height = 2 * chain.stride;
+  for (int j = 0; j < chain.block_size; ++j) {
+    for (int row = FirstRowOfVector(j); row < chain.stride; row += kLanes) {
+      V value = hn::Load(d, panel + j * height + row);
+      if (L_before != nullptr) {
+        const double* X = L_before + chain.stride;
+        for (int i = 0; i < chain.block_size; ++i, X += height) {
+          value = hn::Sub(value, hn::Mul(hn::Load(d, X + row), hn::Set(d, X[j])));
+        }
+      }
+      hn::Store(value, d, L + j * height + row);
+    }
+    for (int row = chain.stride; row < height; row += kLanes) {
+      hn::Store(hn::Load(d, panel + j * height + row), d, L + j * height + row);
+    }
+  }
+}
+
+// Factors one block column in place, and with it the right-hand side of its rows.
+bool FactorPanel(const Chain& chain, const double* damping, double* L, double* inverse,
+                 double* rhs) {
+  const D d;
+  const int height = 2 * chain.stride;
+  for (int j = 0; j < chain.block_size; ++j) {
+    double* const column = L + j * height;
+    const double pivot = column[j] + damping[j];
+    if (!(pivot > 0)) return false;
+    inverse[j] = 1 / std::sqrt(pivot);
+    const V scale = hn::Set(d, inverse[j]);
+    for (int row = FirstRowOfVector(j); row < height; row += kLanes) {
+      hn::Store(hn::Mul(hn::Load(d, column + row), scale), d, column + row);
+    }
+    const double y = rhs[j] * inverse[j];
+    // Of the vector that row j lies in, what is solved stays as it is.
+    const int first = FirstRowOfVector(j);
+    const auto below_j = hn::Not(hn::FirstN(d, static_cast<std::size_t>(j - first + 1)));
+    const V taken = hn::Mul(hn::Load(d, column + first), hn::Set(d, y));
+    hn::Store(hn::Sub(hn::Load(d, rhs + first), hn::IfThenElseZero(below_j, taken)), d,
+              rhs + first);
+    Subtract(column, y, first + kLanes, height, rhs);
+    rhs[j] = y;
+    for (int k = j + 1; k < chain.block_size; ++k) {
+      Subtract(column, column[k], FirstRowOfVector(k), height, L + k * height);
+    }
+  }
+  return true;
+}
+
+bool SolveChain(const Chain& chain, const double* panels, const double* damping, double* factor,
+                double* inverse, double* rhs) {
+  const int height = 2 * chain.stride, panel_size = chain.block_size * height;
+  for (int k = 0; k < chain.num_blocks; ++k) {
+    double* const L = factor + k * panel_size;
+    const int at = k * chain.stride;
+    // A right-hand side's rows of the blocks before are solved; those after it get what this block
+    // takes off them.
+    CopyPanel(chain, panels + k * panel_size, k > 0 ? L - panel_size : nullptr, L);
+    if (!FactorPanel(chain, damping + at, L, inverse + at, rhs + at)) return false;
+  }
+  for (int k = chain.num_blocks - 1; k >= 0; --k) {
+    const double* const L = factor + k * panel_size;
+    double* const x = rhs + k * chain.stride;
+    for (int j = chain.block_size - 1; k + 1 < chain.num_blocks && j >= 0; --j) {
+      x[j] -= DotProduct(L + j * height + chain.stride, x + chain.stride, chain.stride);
+    }
+    for (int j = chain.block_size - 1; j >= 0; --j) {
+      x[j] *= inverse[k * chain.stride + j];
+      for (int i = 0; i < j; ++i) x[i] -= L[i * height + j] * x[j];
+    }
+  }
+  return true;
+}
+
+// Pairs (a, b) of (q, v, q, v) with a >= b, row by row.
+constexpr int kPairs = 10;
+
+void AddBetweenStates(int n, int stride, std::span<const BetweenStates> between,
+                      const IntervalTarget& target) {
+  const D d;
+  const int rows = (n + kVector - 1) / kVector * kVector, height = 2 * stride;
+  const auto add = [&](V value, double* to) {
+    hn::StoreU(hn::Add(hn::LoadU(d, to), value), d, to);
+  };
+  // Rows of padding add zeros to whatever comes next.
+  for (int row = 0; row < rows; row += kLanes) {
+    V sums[4] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    for (const BetweenStates& one : between) {
+      const V gradient = hn::Load(d, one.gradient + row);
+      for (int a = 0; a < 4; ++a) {
+        sums[a] = hn::Add(sums[a],
+                          hn::Mul(gradient, hn::Set(d, one.weights[static_cast<std::size_t>(a)])));
+      }
+    }
+    if (target.near_gradient != nullptr) {
+      add(sums[0], target.near_gradient + row);
+      add(sums[1], target.near_gradient + n + row);
+    }
+    add(sums[2], target.far_gradient + row);
+    add(sums[3], target.far_gradient + n + row);
+  }
+  for (int column = 0; column < n; ++column) {
+    for (int row = 0; row < rows; row += kLanes) {
+      V sums[kPairs];
+      for (V& sum : sums) sum = hn::Zero(d);
+      for (const BetweenStates& one : between) {
+        const V hessian = hn::Load(d, one.hessian + column * rows + row);
+        const auto& w = one.weights;
+        const V scaled[4] = {hn::Mul(hessian, hn::Set(d, w[0])), hn::Mul(hessian, hn::Set(d, w[1])),
+                             hn::Mul(hessian, hn::Set(d, w[2])),
+                             hn::Mul(hessian, hn::Set(d, w[3]))};
+        int pair = 0;
+        for (int a = 0; a < 4; ++a) {
+          for (int b = 0; b <= a; ++b, ++pair) {
+            sums[pair] =
+                hn::Add(sums[pair], hn::Mul(scaled[a], hn::Set(d, w[static_cast<std::size_t>(b)])));
+          }
+        }
+      }
+      int pair = 0;
+      for (int a = 0; a < 4; ++a) {
+        for (int b = 0; b <= a; ++b, ++pair) {
+          if (b >= 2) {
+            add(sums[pair], target.far_panel + ((b - 2) * n + column) * height + (a - 2) * n + row);
+          } else if (target.near_panel != nullptr) {
+            const int to_row = a < 2 ? a * n : stride + (a - 2) * n;
+            add(sums[pair], target.near_panel + (b * n + column) * height + to_row + row);
+          }
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace sidestep::planner::chain_kernels
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sidestep::planner::chain_kernels {
+
+HWY_EXPORT(SolveChain);
+HWY_EXPORT(AddBetweenStates);
+
+bool Solve(const Chain& chain, const double* panels, const double* damping, double* factor,
+           double* inverse, double* rhs) {
+  return HWY_DYNAMIC_DISPATCH(SolveChain)(chain, panels, damping, factor, inverse, rhs);
+}
+
+void AddBetween(int num_joints, int stride, std::span<const BetweenStates> between,
+                const IntervalTarget& target) {
+  HWY_DYNAMIC_DISPATCH(AddBetweenStates)(num_joints, stride, between, target);
+}
+
+}  // namespace sidestep::planner::chain_kernels
+#endif  // HWY_ONCE

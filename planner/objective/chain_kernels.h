@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+/// The SIMD half of ChainQuadratic and of what fills it. A lane is a row, sums are in a fixed
+/// order, nothing is contracted: every instruction set gives the same bits.
+namespace sidestep::planner::chain_kernels {
+
+/// See ChainQuadratic.
+struct Chain {
+  int num_blocks = 0, block_size = 0, stride = 0;
+};
+
+/// @param factor, @param inverse room for as many numbers as `panels` and a vector of the chain.
+/// @param rhs one block longer than a vector of the chain, that one zero; the solution on return.
+/// @return false unless the matrix is positive definite.
+bool Solve(const Chain& chain, const double* panels, const double* damping, double* factor,
+           double* inverse, double* rhs);
+
+/// A quadratic in one configuration of an interval, whose position is the sum of `weights` times
+/// (q, v, q, v) of the two states around it: what ObstacleQuadratics holds.
+struct BetweenStates {
+  const double* gradient = nullptr;
+  const double* hessian = nullptr;
+  std::array<double, 4> weights{};
+};
+
+/// Where the halves of an interval's quadratic go: the panels and gradients of the two states; null
+/// for the near state if that is fixed.
+struct IntervalTarget {
+  double* near_panel = nullptr;
+  double* near_gradient = nullptr;
+  double* far_panel = nullptr;
+  double* far_gradient = nullptr;
+};
+
+/// Adds to the states' quadratic what configurations between them say: for each pair of (q, v, q,
+/// v), the product of their weights times the configuration's Hessian (a Kronecker product).
+void AddBetween(int num_joints, int stride, std::span<const BetweenStates> between,
+                const IntervalTarget& target);
+
+}  // namespace sidestep::planner::chain_kernels

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <memory>
+
+#include "sidestep/planner/gp_settings.h"
+#include "sidestep/planner/planner.h"
+#include "sidestep/planner/planner_settings.h"
+#include "sidestep/planner/trajectory_optimizer.h"
+
+namespace sidestep::planner {
+
+/// Which guesses are tried, for how long, and which of the answers counts: the policy of all
+/// planners that optimise a trajectory, whatever solver they do it with. It caps iterations; time
+/// only where the request's budget does.
+///
+/// A cold start is solved in two stages, first without joint limits and then with them from there:
+/// stiff limits from the beginning keep the solver on the wrong side of obstacles. A warm start is
+/// solved with limits at once. A plan is judged by its clearance, not by its cost. If a cold one is
+/// not free within the limits, or a warm one not free, direct motions with other timings are tried
+/// as seeds until one is, and the best counts. Where all of them touch something, a cold start is
+/// followed by detours over random configurations, other ones for another time. Such seeds get few
+/// iterations, and no second stage if the first leaves them less safe than the best so far.
+class SeededPlanner : public Planner {
+ public:
+  PlannerCapabilities capabilities() const override {
+    return {.reaches_goal = true, .avoids_obstacles = true};
+  }
+
+ protected:
+  /// @throws std::invalid_argument for settings out of range.
+  SeededPlanner(const robot::RobotModel& robot, const PlannerSettings& settings,
+                const GpSettings& gp)
+      : Planner(robot, settings), gp_(gp) {}
+
+  const GpSettings& gp() const { return gp_; }
+
+ private:
+  /// `request` has been checked; the optimizer borrows it.
+  virtual std::unique_ptr<TrajectoryOptimizer> MakeOptimizer(const PlanRequest& request) const = 0;
+
+  PlanAnswer DoPlan(const PlanRequest& request, PlanJudge& judge) const final;
+  enum class Stages {
+    kWithLimits,  ///< for a warm start
+    kBoth         ///< for a cold one
+  };
+  struct Candidate {
+    PlanAnswer answer;
+    Verdict verdict;
+  };
+  class Search;
+  bool IsWithinLimits(const Verdict& verdict) const;  // the robot's own, unscaled
+  /// Free within limits comes before free, free before not free; then what is safer.
+  bool IsBetter(const Verdict& a, const Verdict& b) const;
+
+  GpSettings gp_;
+};
+
+}  // namespace sidestep::planner
