@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "sidestep/robot/fci/socket.h"
@@ -24,7 +25,8 @@ struct ServerOptions {
   std::uint16_t version = robot::fci::kVersion;
 };
 
-/// Puts a simulated Panda on the network: one client after another, as the robot has it.
+/// Puts a simulated Panda on the network: one client after another, as the robot has it; who comes
+/// while one is there is turned away.
 class Server {
  public:
   /// Takes the port. @param panda must outlive this.
@@ -39,6 +41,8 @@ class Server {
 
  private:
   void Serve(robot::fci::CommandLink link, const std::function<bool()>& stop);
+  void TurnAway();
+  std::optional<robot::fci::CommandLink> AwaitClient();
   void Tell(const std::string& what) const;
 
   SimulatedPanda& panda_;
