@@ -20,6 +20,7 @@
 #include "sidestep/bench/safety_watch.h"
 #include "sidestep/bench/sensor_watch.h"
 #include "sidestep/bench/true_world.h"
+#include "sidestep/control/safety.h"
 #include "sidestep/core/cpu_time.h"
 #include "sidestep/core/goal.h"
 #include "sidestep/planner/registry.h"
@@ -121,8 +122,10 @@ class Loop {
 
   void Go() {
     while (true) {
-      if (options_.is_stopped && options_.is_stopped()) {
-        return Stop("it was stopped from outside");
+      const std::string why_stop = options_.why_stop ? options_.why_stop() : "";
+      if (!why_stop.empty()) {
+        Note(control::SafetyCheck::kOperatorStop, control::Reaction::kBrake);
+        return Stop("it was stopped from outside: " + why_stop);
       }
       const robot::RobotStatus status = world_.robot->Status();
       if (status.mode == robot::RobotMode::kFault) return Stop("the robot stopped: " + status.why);
@@ -146,6 +149,13 @@ class Loop {
 
   // It is to end, or nothing more can come of it: the robot comes to rest first.
   void Stop(const std::string& why) {
+  // What was found beside the robot's own supervisor.
+  void Note(control::SafetyCheck check, control::Reaction reaction, double value = 0,
+            double limit = 0) {
+    result_.safety_events.push_back(
+        {EpisodeTime(now_s_), control::ToString(check), control::ToString(reaction), value, limit});
+  }
+
     world_.robot->Hold();
     const double latest_s = now_s_ + kLongestStop_s;
     for (bool at_rest = false; !at_rest && now_s_ < latest_s;) {
@@ -201,6 +211,8 @@ class Loop {
     }
   }
 
+    const std::vector<double> answers_s = world_.robot->TakeAnswerTimes();
+    result_.answers_s.insert(result_.answers_s.end(), answers_s.begin(), answers_s.end());
   void KeepTicks() { KeepTicks(world_.robot->TakeControlLog()); }
 
   // Those that are not kept already.

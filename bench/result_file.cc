@@ -50,6 +50,15 @@ Json StageTable(const StageTimes& times) {
   return table;
 }
 
+// What a robot waited for its commands; null where none did.
+Json AnswerTable(const std::vector<double>& seconds) {
+  if (seconds.empty()) return nullptr;
+  return {{"count", seconds.size()},
+          {"p50_us", 1e6 * Quantile(seconds, 0.5)},
+          {"p99_9_us", 1e6 * Quantile(seconds, 0.999)},
+          {"max_us", 1e6 * Quantile(seconds, 1)}};
+}
+
 // The leaves of a tree by their paths; lists of plain values are leaves.
 void Flatten(const Json& value, const std::string& path,
              std::map<std::string, std::string>& leaves) {
@@ -109,7 +118,8 @@ std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& s
   json["wall_clock"] = {{"episode_s", result.wall_s},
                         {"cycle_cpu", StageTable(result.times)},
                         {"cycles_over_charge", result.cycles_over_charge},
-                        {"late_plans", result.late_plans}};
+                        {"late_plans", result.late_plans},
+                        {"answers", AnswerTable(result.answers_s)}};
   return JsonText(json);
 }
 

@@ -41,7 +41,7 @@ int Run(const RunOptions& options) {
                       {"trace.h5", "result.json"});
   const StopSignals signals;
   const bench::EpisodeOptions episode = {.observe_field = {},
-                                         .is_stopped = [&] { return signals.count() > 0; },
+                                         .why_stop = [&] { return signals.first(); },
                                          .clock = options.clock == "wall"
                                                       ? bench::EpisodeClock::kWall
                                                       : bench::EpisodeClock::kVirtual};

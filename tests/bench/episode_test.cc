@@ -211,10 +211,13 @@ TEST_F(Episode, ThatIsStoppedFromOutsideBrakesAndKeepsWhatHappened) {
   EpisodeOptions options;
   int cycles = 0;
   options.observe_field = [&](EpisodeTime, const auto&, const robot::WorldTruth*) { ++cycles; };
-  options.is_stopped = [&] { return cycles == 8; };
+  options.why_stop = [&] { return cycles == 8 ? "a test" : ""; };
   const EpisodeResult result = RunEpisode(scenario_, arm_, world_.Factory(), options);
   EXPECT_EQ(result.outcome, Outcome::kAborted);
-  EXPECT_EQ(result.reason, "it was stopped from outside");
+  EXPECT_EQ(result.reason, "it was stopped from outside: a test");
+  ASSERT_EQ(result.safety_events.size(), 1u);
+  EXPECT_EQ(result.safety_events[0].check, "operator_stop");
+  EXPECT_EQ(result.safety_events[0].reaction, "brake");
   EXPECT_TRUE(world_.holds);
   EXPECT_GE(result.recording.control.back().t.seconds(), 0.7);
   EXPECT_EQ(result.recording.cycles.size(), 8u);
@@ -266,8 +269,9 @@ TEST_F(Episode, OnAWallClockTakesAsLongAsItLastsAndDropsPlansThatComeLate) {
   scenario_.latency_s = 1e-6;  // no plan can be there by then
   EpisodeOptions options;
   options.clock = EpisodeClock::kWall;
-  options.is_stopped = [begin = std::chrono::steady_clock::now()] {
-    return std::chrono::steady_clock::now() - begin > std::chrono::milliseconds(600);
+  options.why_stop = [begin = std::chrono::steady_clock::now()] {
+    const bool is_over = std::chrono::steady_clock::now() - begin > std::chrono::milliseconds(600);
+    return is_over ? "a test" : "";
   };
   const EpisodeResult result = RunEpisode(scenario_, arm_, world_.Factory(), options);
   EXPECT_GE(result.wall_s, result.recording.control.back().t.seconds() - 0.02);
