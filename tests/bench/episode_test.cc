@@ -207,6 +207,38 @@ TEST_F(Episode, GoesOnWithWhatItKnowsWhenAnOverdueSensorHasNothingMoreToGive) {
   EXPECT_NEAR(world_.empty_reads, 1000 * silent_s, 5);
 }
 
+// Arrives half a frame after the first one's, and is older.
+class SlowSensor final : public robot::Sensor {
+ public:
+  EpisodeTime NextDue() const override { return EpisodeTime((next_ + 0.5) / 30.0); }
+  std::optional<Scan> Read(EpisodeTime now) override {
+    if (now < NextDue()) return std::nullopt;
+    Scan scan;
+    scan.t = EpisodeTime((next_++ - 0.5) / 30.0);
+    return scan;
+  }
+  int num_read() const { return next_; }
+
+ private:
+  int next_ = 0;
+};
+
+TEST_F(Episode, LeavesOutAndCountsTheScansOfASlowerSensor) {
+  const EpisodeResult alone = Run();
+  SlowSensor slow;
+  const WorldFactory both = [&](const scenarios::Scenario& scenario,
+                                const robot::RobotModel& robot) {
+    EpisodeWorld world = world_.Factory()(scenario, robot);
+    world.sensors.push_back({"slow", &slow});
+    return world;
+  };
+  const EpisodeResult result = RunEpisode(scenario_, arm_, both);
+  EXPECT_EQ(result.outcome, alone.outcome) << result.reason;
+  EXPECT_EQ(result.recording.observations.size(), alone.recording.observations.size());
+  EXPECT_GT(slow.num_read(), 10);
+  EXPECT_EQ(result.scans_left_out.at("slow"), slow.num_read());
+}
+
 TEST_F(Episode, ThatIsStoppedFromOutsideBrakesAndKeepsWhatHappened) {
   EpisodeOptions options;
   int cycles = 0;
