@@ -221,10 +221,11 @@ int Recover(const HardwareOptions& options) {
       return refuse(*objection);
     }
     driver->Recover();
-    const hardware::RobotSnapshot after = driver->ReadOnce();
-    Print("mode             {}\n", robot::fci::Name(after.mode));
+    Print("mode             {}\n", robot::fci::Name(driver->ReadOnce().mode));
     log.Recovered(errors);
-    if (const auto objection = WhyNotReady(after, robot)) return refuse(*objection);
+    AwaitReady(*driver, robot);
+  } catch (const hardware::NotReady& error) {
+    return refuse(error.objection());
   } catch (const hardware::FciError& error) {
     return refuse({control::SafetyCheck::kRecovery, error.what()});
   }

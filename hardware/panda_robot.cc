@@ -98,8 +98,7 @@ PandaRobot::PandaRobot(std::unique_ptr<FciDriver> driver, const robot::RobotMode
                 WithTorques(options.safety)),
       seen_(kLogLength),
       answered_(kLogLength) {
-  const RobotSnapshot state = driver_->ReadOnce();
-  if (const auto objection = WhyNotReady(state, robot)) throw NotReady(*objection);
+  const RobotSnapshot state = AwaitReady(*driver_, robot);
   driver_->Configure(SettingsFor(robot));
   latest_ = {EpisodeTime(0), VectorOf(state.q), VectorOf(state.dq)};
 }

@@ -134,4 +134,14 @@ std::optional<Objection> WhyNotReady(const RobotSnapshot& state, const robot::Ro
   return std::nullopt;
 }
 
+RobotSnapshot AwaitReady(FciDriver& driver, const robot::RobotModel& robot) {
+  constexpr int kLongest_ms = 500;  // a robot tells of itself each millisecond
+  for (int ms = 0;; ++ms) {
+    const RobotSnapshot state = driver.ReadOnce();
+    const std::optional<Objection> objection = WhyNotReady(state, robot);
+    if (!objection) return state;
+    if (objection->check != SafetyCheck::kRecovery || ms == kLongest_ms) throw NotReady(*objection);
+  }
+}
+
 }  // namespace sidestep::hardware

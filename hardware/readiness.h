@@ -35,4 +35,9 @@ class NotReady : public FciError {
 /// calibration of a camera, is one more function of the list in readiness.cc.
 std::optional<Objection> WhyNotReady(const RobotSnapshot& state, const robot::RobotModel& robot);
 
+/// The same of a robot as it is now. One that only does not rest is given half a second: it may
+/// have stopped a moment ago, and what is measured at rest trembles.
+/// @return its state. @throws NotReady; FciError.
+RobotSnapshot AwaitReady(FciDriver& driver, const robot::RobotModel& robot);
+
 }  // namespace sidestep::hardware

@@ -12,7 +12,7 @@ namespace sidestep::hardware {
 
 /// A Panda without a wire that does at once what it is told, each millisecond or as fast as it is
 /// answered.
-class PerfectPanda final : public FciDriver {
+class PerfectPanda : public FciDriver {
  public:
   explicit PerfectPanda(RobotSnapshot state, bool in_real_time = false)
       : state_(std::move(state)), in_real_time_(in_real_time) {}

@@ -98,6 +98,26 @@ INSTANTIATE_TEST_SUITE_P(
                 SafetyCheck::kRecovery, "joint 1 is 0.01 rad from where"}),
     [](const auto& test) { return std::string(test.param.name); });
 
+// Trembles for so many milliseconds.
+class TremblingPanda final : public PerfectPanda {
+ public:
+  explicit TremblingPanda(int length_ms) : PerfectPanda(RestingPanda()), length_ms_(length_ms) {}
+  RobotSnapshot ReadOnce() override {
+    RobotSnapshot state = PerfectPanda::ReadOnce();
+    if (reads_++ < length_ms_) state.dq[2] = 0.01;
+    return state;
+  }
+
+ private:
+  int length_ms_, reads_ = 0;
+};
+
+TEST(AwaitReady, GivesARobotThatHasJustStoppedHalfASecondToRest) {
+  TremblingPanda soon(400), late(600);
+  EXPECT_EQ(AwaitReady(soon, Panda()).dq[2], 0);
+  EXPECT_THROW(AwaitReady(late, Panda()), NotReady);
+}
+
 // A robot.yaml of another robot, such as the FR3, or of wishful thinking.
 struct WideLimit {
   const char* text;
