@@ -242,31 +242,34 @@ TEST(PandaRobot, AllocatesNothingAndLocksNothingToAnswer) {
   const robot::RobotModel model =
       robot::RobotModel::Load(SIDESTEP_SOURCE_DIR "/models", "panda", Pose());
   auto driver = std::make_unique<PerfectPanda>(RestingPanda());
-  int allocations = 0, locks = 0, answers = 0;
+  int allocations = 0, locks = 0, answers = 0, allocated = 0, locked = 0;
   driver->before = [&] {
-    allocations -= CountAllocationsOfThread();
-    locks -= CountLocksOfThread();
+    allocated = CountAllocationsOfThread();
+    locked = CountLocksOfThread();
   };
   driver->after = [&] {
-    allocations += CountAllocationsOfThread();
-    locks += CountLocksOfThread();
+    allocations += CountAllocationsOfThread() - allocated;
+    locks += CountLocksOfThread() - locked;
     ++answers;
   };
-  PandaRobot panda(std::move(driver), model, LockStep(control::SafetyProfile::kObserve));
-  panda.Submit(Nod(panda.Read().q), EpisodeTime(0.1));
-  ObstacleReport report;
-  report.obstacles.resize(5);
-  panda.Watch(report);
-  panda.AdvanceTo(EpisodeTime(1.5));
+  {
+    PandaRobot panda(std::move(driver), model, LockStep(control::SafetyProfile::kObserve));
+    panda.Submit(Nod(panda.Read().q), EpisodeTime(0.1));
+    ObstacleReport report;
+    report.obstacles.resize(5);
+    panda.Watch(report);
+    panda.AdvanceTo(EpisodeTime(1.5));
+  }  // the thread has ended
   EXPECT_GE(answers, 1500);
   EXPECT_EQ(allocations, 0);
   EXPECT_EQ(locks, 0);
   // The counters count.
-  const int before = CountAllocationsOfThread(), locked = CountLocksOfThread();
+  allocated = CountAllocationsOfThread();
+  locked = CountLocksOfThread();
   std::mutex mutex;
   const std::lock_guard guard(mutex);
   const auto number = std::make_unique<int>(3);
-  EXPECT_GT(CountAllocationsOfThread(), before);
+  EXPECT_GT(CountAllocationsOfThread(), allocated);
   EXPECT_EQ(CountLocksOfThread() - locked, AreLocksCounted() ? 1 : 0);
 }
 
