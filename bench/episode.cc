@@ -160,12 +160,18 @@ class Loop {
   void Stop(const std::string& why) {
     world_.robot->Hold();
     const double latest_s = now_s_ + kLongestStop_s;
-    for (bool at_rest = false; !at_rest && now_s_ < latest_s;) {
+    do {
       Advance(clock_->WaitUntil(EpisodeTime(now_s_ + 0.01)).seconds());
-      at_rest = world_.robot->Read().v.cwiseAbs().maxCoeff() <= kStill_rad_s;
-    }
+    } while (!Rests() && now_s_ < latest_s);
     is_aborted_ = true;
     result_.reason = why;
+  }
+
+  // Whether it stands, and is told to; so slow it may have only begun to move.
+  bool Rests() const {
+    const std::vector<ControlSample>& ticks = recorder_.recording().control;
+    const bool is_told = ticks.empty() || ticks.back().v_command.isZero(1e-6);
+    return is_told && world_.robot->Read().v.cwiseAbs().maxCoeff() <= kStill_rad_s;
   }
 
   // Stops the robot first of all. What happened before is worth keeping, but whatever failed may

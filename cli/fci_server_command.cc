@@ -159,7 +159,7 @@ void AddFciServerCommand(CommandLine& line) {
       ->check(CLI::IsMember({"lockstep", "wall"}));
   server
       ->add_option("--grace", options->server.grace_s,
-                   "In lock-step, how long to wait for an answer before it is lost [s] [1]")
+                   "In lock-step, how long to wait for an answer before it is lost [s] [10]")
       ->check(NumberFrom(0.001, 3600.0));
   server
       ->add_option("--q-start", options->q_start,

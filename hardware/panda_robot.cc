@@ -263,8 +263,8 @@ std::string PandaRobot::HintOf(const FciError& error) const {
   const bool lost =
       robot::fci::Holds(error.errors(), robot::fci::Error::kCommunicationConstraintsViolation);
   if (lost && options_.lockstep) {
-    return "; --clock lockstep is for a server that waits for each answer, `sidestep fci-server` "
-           "with --clock lockstep";
+    return "; --clock lockstep is for a server that waits for each answer: `sidestep fci-server "
+           "--clock lockstep`, where --grace says how long";
   }
   if (error.kind() != FciError::Kind::kAborted) return "";
   try {  // such as by a hand that guides the arm

@@ -20,8 +20,8 @@ enum class ServerClock : std::uint8_t {
 struct ServerOptions {
   std::string address = "127.0.0.1";  ///< its port is the protocol's, 1337
   ServerClock clock = ServerClock::kLockStep;
-  double grace_s = 1;  ///< lock-step: an answer that takes longer is lost, as are those after it
-  bool once = false;   ///< ends with the first client
+  double grace_s = 10;  ///< lock-step: an answer that takes longer is lost, as are those after it
+  bool once = false;    ///< ends with the first client
   std::uint16_t version = robot::fci::kVersion;
 };
 
