@@ -258,6 +258,17 @@ TEST_F(Hardware, RecoversARobotOnceAMinute) {
   }
 }
 
+TEST_F(Hardware, RefusesARobotOfAnotherVersion) {
+  std::ofstream(folder_.path() / "faults.yaml") << "version: 6\n";
+  const Server server({"--faults", folder_.path() / "faults.yaml"});
+  const Finished finished = Run("run", kRun);
+  EXPECT_EQ(finished.exit_code, 2);
+  EXPECT_THAT(finished.err,
+              HasSubstr("the robot speaks version 6 of the protocol, this program 5"));
+  EXPECT_FALSE(fs::exists(folder_.path() / "out"));
+  EXPECT_THAT(Text("state/sidestep/hardware.csv"), HasSubstr(",configuration,refuse,"));
+}
+
 TEST_F(Hardware, DoesNotRecoverARobotWhoseStopIsPressed) {
   std::ofstream(folder_.path() / "faults.yaml")
       << "faults: [{kind: user_stop, at_s: 0.1, for_s: 3600}]\n";
