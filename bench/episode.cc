@@ -20,6 +20,7 @@
 #include "sidestep/bench/scenario_planner.h"
 #include "sidestep/bench/sensor_watch.h"
 #include "sidestep/bench/true_world.h"
+#include "sidestep/control/safety.h"
 #include "sidestep/core/cpu_time.h"
 #include "sidestep/core/goal.h"
 #include "sidestep/planner/replanner.h"
@@ -72,7 +73,6 @@ class Loop {
        const EpisodeOptions& options)
       : scenario_(scenario),
         world_(world),
-        sensors_(world.sensors.begin(), world.sensors.end()),
         options_(options),
         planner_(MakePlanner(scenario, robot)),
         model_(sdf::MakeWorldModel(MakeWorldModelOptions(
@@ -88,6 +88,9 @@ class Loop {
         end_s_(kHorizons * horizon_s_) {
     if (scenario.safety.profile != scenarios::SafetyProfile::kOff) {
       safety_.emplace(scenario, world);
+    }
+    for (const robot::NamedSensor& sensor : world.sensors) {
+      sensors_.emplace_back(sensor, /*has_own_clock=*/is_real_time_);
     }
     for (const char* const stage : kStages) result_.times[stage];
     result_.times["cycle"];
@@ -123,8 +126,10 @@ class Loop {
 
   void Go() {
     while (true) {
-      if (options_.is_stopped && options_.is_stopped()) {
-        return Stop("it was stopped from outside");
+      const std::string why_stop = options_.why_stop ? options_.why_stop() : "";
+      if (!why_stop.empty()) {
+        Note(control::SafetyCheck::kOperatorStop, control::Reaction::kBrake);
+        return Stop("it was stopped from outside: " + why_stop);
       }
       const robot::RobotStatus status = world_.robot->Status();
       if (status.mode == robot::RobotMode::kFault) return Stop("the robot stopped: " + status.why);
@@ -146,16 +151,29 @@ class Loop {
     }
   }
 
+  // What was found beside the robot's own supervisor.
+  void Note(control::SafetyCheck check, control::Reaction reaction, double value = 0,
+            double limit = 0) {
+    result_.safety_events.push_back(
+        {EpisodeTime(now_s_), control::ToString(check), control::ToString(reaction), value, limit});
+  }
+
   // It is to end, or nothing more can come of it: the robot comes to rest first.
   void Stop(const std::string& why) {
     world_.robot->Hold();
     const double latest_s = now_s_ + kLongestStop_s;
-    for (bool at_rest = false; !at_rest && now_s_ < latest_s;) {
+    do {
       Advance(clock_->WaitUntil(EpisodeTime(now_s_ + 0.01)).seconds());
-      at_rest = world_.robot->Read().v.cwiseAbs().maxCoeff() <= kStill_rad_s;
-    }
+    } while (!Rests() && now_s_ < latest_s);
     is_aborted_ = true;
     result_.reason = why;
+  }
+
+  // Whether it stands, and is told to; so slow it may have only begun to move.
+  bool Rests() const {
+    const std::vector<ControlSample>& ticks = recorder_.recording().control;
+    const bool is_told = ticks.empty() || ticks.back().v_command.isZero(1e-6);
+    return is_told && world_.robot->Read().v.cwiseAbs().maxCoeff() <= kStill_rad_s;
   }
 
   // Stops the robot first of all. What happened before is worth keeping, but whatever failed may
@@ -201,6 +219,8 @@ class Loop {
     for (SafetyEvent& event : world_.robot->TakeSafetyEvents()) {
       result_.safety_events.push_back(std::move(event));
     }
+    const std::vector<double> answers_s = world_.robot->TakeAnswerTimes();
+    result_.answers_s.insert(result_.answers_s.end(), answers_s.begin(), answers_s.end());
   }
 
   void KeepTicks() { KeepTicks(world_.robot->TakeControlLog()); }
@@ -233,14 +253,22 @@ class Loop {
 
   void Sense() {
     const double begin = ThreadCpuSeconds();
-    const std::optional<Scan> scan = NextSensor()->Read(EpisodeTime(now_s_));
+    SensorWatch* const sensor = NextSensor();
+    const std::optional<Scan> scan = sensor->Read(EpisodeTime(now_s_));
     sense_s_ += ThreadCpuSeconds() - begin;
+    if (const auto jump_s = sensor->TakeClockJump()) {
+      // Without its scans, what is seen gets stale.
+      Note(control::SafetyCheck::kClockJump, control::Reaction::kNone, *jump_s,
+           ClockWatch::kJump_s);
+    }
     if (!scan) return;
+    // The world model takes scans of all sensors in the order of capture.
+    if (newest_scan_ && scan->t <= *newest_scan_) return sensor->LeaveOut();
+    newest_scan_ = scan->t;
     model_->Observe(*scan);
     for (TrackEvent& event : model_->TakeEvents()) recorder_.Keep(std::move(event));
     recorder_.Keep(*scan, EpisodeTime(now_s_), model_->Occupancy());
     if (safety_) world_.robot->Watch(safety_->Observe(*scan));
-    has_seen_ = true;
   }
 
   // The first multiple of the period that is past `t_s`, or as good as there, and not used yet.
@@ -255,7 +283,7 @@ class Loop {
     next_cycle_s_ = ++cycle_index_ / scenario_.replan_rate_hz;
     // In real time a cycle that is done early need not wait for its moment.
     if (!is_real_time_) ScheduleCycle(now_s_ + expected.seconds());
-    if (!has_seen_) return;  // nothing is known yet
+    if (!newest_scan_) return;  // nothing is known yet
     // What was submitted a moment ago may be followed from the next tick on.
     const bool may_go_on = now_s_ - submitted_s_ <= kTick_s;
     if (!may_go_on && world_.robot->Status().mode == robot::RobotMode::kHolding) {
@@ -357,8 +385,8 @@ class Loop {
   double next_cycle_s_ = 0;
   double end_s_;
   double sense_s_ = 0;
-  double submitted_s_ = -1;  // the latest plan
-  bool has_seen_ = false;
+  double submitted_s_ = -1;                 // the latest plan
+  std::optional<EpisodeTime> newest_scan_;  // capture
   bool is_aborted_ = false;
   EpisodeResult result_;
 };

@@ -47,7 +47,9 @@ struct EpisodeResult {
   int late_plans = 0;  ///< that came after the moment they were made for, and were dropped
   /// Scans by each sensor's name that were captured no later than the one before, and left out.
   std::map<std::string, int> scans_left_out;
-  std::vector<SafetyEvent> safety_events;  ///< of the robot's supervisor, in order
+  std::vector<SafetyEvent> safety_events;  ///< of the robot's supervisor and the loop, in order
+  /// How long the robot was kept waiting for each command, in real time; empty in simulation.
+  std::vector<double> answers_s;
 };
 
 /// What an episode's time goes by.
@@ -62,9 +64,9 @@ enum class EpisodeClock {
 /// How an episode is run, beside what the scenario says.
 struct EpisodeOptions {
   FieldObserver observe_field;
-  /// Asked again and again: once it says true, the robot brakes, and when it rests the episode ends
-  /// as aborted.
-  std::function<bool()> is_stopped;
+  /// Asked again and again why the robot is to stop: once that is not empty it brakes, and when it
+  /// rests the episode ends as aborted, for this reason.
+  std::function<std::string()> why_stop;
   EpisodeClock clock = EpisodeClock::kVirtual;
 };
 

@@ -24,6 +24,17 @@ constexpr std::uintmax_t kMaxResultBytes = 1 << 24;
 
 Json NumberOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+double NumberOrNaN(const Json& value) {
+  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+}
+
+const Json& At(const Json& map, const std::string& key, const std::string& path) {
+  if (!map.is_object() || !map.contains(key)) {
+    throw InputError(path, "is not a whole result: '" + key + "' is missing");
+  }
+  return map[key];
+}
+
 Json ValueOf(const Metric& metric, double value) {
   if (std::string(metric.unit) == "count") return Json(std::llround(value));
   return NumberOrNull(value);
@@ -37,6 +48,15 @@ Json StageTable(const StageTimes& times) {
                     {"p99_ms", NumberOrNull(1e3 * Quantile(seconds, 0.99))}};
   }
   return table;
+}
+
+// What a robot waited for its commands; null where none did.
+Json AnswerTable(const std::vector<double>& seconds) {
+  if (seconds.empty()) return nullptr;
+  return {{"count", seconds.size()},
+          {"p50_us", 1e6 * Quantile(seconds, 0.5)},
+          {"p99_9_us", 1e6 * Quantile(seconds, 0.999)},
+          {"max_us", 1e6 * Quantile(seconds, 1)}};
 }
 
 // The leaves of a tree by their paths; lists of plain values are leaves.
@@ -98,7 +118,8 @@ std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& s
   json["wall_clock"] = {{"episode_s", result.wall_s},
                         {"cycle_cpu", StageTable(result.times)},
                         {"cycles_over_charge", result.cycles_over_charge},
-                        {"late_plans", result.late_plans}};
+                        {"late_plans", result.late_plans},
+                        {"answers", AnswerTable(result.answers_s)}};
   return JsonText(json);
 }
 
@@ -110,25 +131,25 @@ ResultSummary ReadResult(const std::string& path) {
   }
   ResultSummary summary;
   try {
-    summary.scenario = json.at("scenario").get<std::string>();
-    summary.knowledge = json.at("knowledge").get<std::string>();
-    const auto word = json.at("outcome").get<std::string>();
+    summary.scenario = At(json, "scenario", path).get<std::string>();
+    summary.knowledge = At(json, "knowledge", path).get<std::string>();
+    const auto word = At(json, "outcome", path).get<std::string>();
     const std::optional<Outcome> outcome = OutcomeFromString(word);
     if (!outcome) throw InputError(path, "is not a whole result: no outcome is '" + word + "'");
     summary.outcome = *outcome;
-    const Json& touched = json.at("touched");
+    const Json& touched = At(json, "touched", path);
     if (!touched.is_null()) summary.touched = touched.get<std::string>();
-    Flatten(json.at("parameters"), "", summary.parameters);
+    Flatten(At(json, "parameters", path), "", summary.parameters);
     for (const Metric& metric : Metrics()) {
-      const Json& value = json.at(metric.name);
-      summary.metrics[metric.name] =
-          value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+      summary.metrics[metric.name] = NumberOrNaN(At(json, metric.name, path));
     }
-    const Json& p50 = json.at("wall_clock").at("cycle_cpu").at("cycle").at("p50_ms");
-    summary.cycle_p50_ms =
-        p50.is_null() ? std::numeric_limits<double>::quiet_NaN() : p50.get<double>();
-  } catch (const Json::exception& error) {
-    throw InputError(path, std::string("is not a whole result: ") + error.what());
+    const Json* cycle = &json;
+    for (const char* const key : {"wall_clock", "cycle_cpu", "cycle", "p50_ms"}) {
+      cycle = &At(*cycle, key, path);
+    }
+    summary.cycle_p50_ms = NumberOrNaN(*cycle);
+  } catch (const Json::exception&) {  // whose text is of no use to who wrote the file
+    throw InputError(path, "is not a whole result: a value is of the wrong kind");
   }
   return summary;
 }

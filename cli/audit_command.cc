@@ -104,10 +104,11 @@ int Audit(const AuditOptions& options) {
   const Problem problem =
       LoadProblem(options.scenario.scenario, ParseOverrides(options.scenario), paths);
   WarnOfThinThings(problem.scenario);
-  const std::string out = MakeOutFolder(
+  const OutFolder folder(
       options.out.empty() ? "out/" + problem.scenario.name + "/audit" : options.out,
       {"slice.png", "field.nrrd", "truth.nrrd", "difference.nrrd", "occupancy.nrrd", "audit.json"});
 
+  const std::string& out = folder.path();
   bench::FieldAudit audit(problem.scenario, options.ahead_s, options.num_points);
   int num_cycles = 0;
   bench::EpisodeOptions episode;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <memory>
 #include <set>
 #include <string>
@@ -10,6 +11,7 @@
 #include "sidestep/bench/result_file.h"
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
+#include "sidestep/core/input_error.h"
 #include "sidestep/core/number_text.h"
 
 namespace sidestep::cli {
@@ -125,8 +127,12 @@ void PrintTable(const std::vector<Line>& lines, std::size_t num_words) {
 
 int Compare(const std::vector<std::string>& folders) {
   std::vector<bench::ResultSummary> results;
-  for (const std::string& folder : folders)
+  for (const std::string& folder : folders) {
+    if (std::filesystem::is_regular_file(folder)) {
+      throw InputError("DIR", "'" + folder + "' is a file: name the folder that a run left");
+    }
     results.push_back(bench::ReadResult(folder + "/result.json"));
+  }
   const std::vector<std::string> differences = FindDifferences(results);
   const std::size_t num_shown = std::min(differences.size(), kMostDifferences);
 

@@ -27,6 +27,7 @@ struct ServerCommand {
   sim::fci::ServerOptions server;
   std::string clock = "lockstep", scenario, faults;
   std::vector<std::string> settings;
+  std::optional<double> speed_m_s;
   std::vector<double> q_start;
 };
 
@@ -51,10 +52,12 @@ Eigen::VectorXd StartOf(const ServerCommand& options, const scenarios::Scenario&
 scenarios::Scenario WorldOf(const ServerCommand& options, const DataPaths& paths) {
   if (options.scenario.empty()) {
     if (!options.settings.empty()) throw InputError("--set", "is of a --scenario");
+    if (options.speed_m_s) throw InputError("--speed", "is of the things of a --scenario");
     return sim::fci::PandaAlone();
   }
   Overrides overrides;
   overrides.settings = ParseSettings(options.settings);
+  overrides.speed_m_s = options.speed_m_s;
   Problem problem = LoadProblem(options.scenario, overrides, paths);
   if (problem.robot.name() != "panda") {
     throw InputError("--scenario",
@@ -67,11 +70,15 @@ scenarios::Scenario WorldOf(const ServerCommand& options, const DataPaths& paths
 // to touch a thing, and in the end how near it came to one.
 class Judge {
  public:
-  explicit Judge(const sim::World& world) : truth_(world) {}
+  explicit Judge(const sim::World& world) : world_(world) { truth_.emplace(world); }
 
   void Observe() {
-    truth_.Observe();
-    for (const TruthSample& sample : truth_.TakeSamples()) {
+    if (world_.ticks() == 0) {
+      truth_.emplace(world_);
+    } else {
+      truth_->Observe();
+    }
+    for (const TruthSample& sample : truth_->TakeSamples()) {
       if (sample.in_contact && sample.contact_object != touched_) {
         Print("{:.3f} s: contact with {}\n", sample.contact_s, sample.contact_object);
       }
@@ -96,7 +103,8 @@ class Judge {
     return sample;
   }
 
-  sim::SimulatedTruth truth_;
+  const sim::World& world_;
+  std::optional<sim::SimulatedTruth> truth_;
   std::string touched_;
   TruthSample nearest_ = Nothing();
 };
@@ -151,7 +159,7 @@ void AddFciServerCommand(CommandLine& line) {
       ->check(CLI::IsMember({"lockstep", "wall"}));
   server
       ->add_option("--grace", options->server.grace_s,
-                   "In lock-step, how long to wait for an answer before it is lost [s] [1]")
+                   "In lock-step, how long to wait for an answer before it is lost [s] [10]")
       ->check(NumberFrom(0.001, 3600.0));
   server
       ->add_option("--q-start", options->q_start,
@@ -162,13 +170,17 @@ void AddFciServerCommand(CommandLine& line) {
                      "Whose things stand and move around the arm; a name or a path");
   server->add_option("--set", options->settings, "KEY=VALUE of the scenario, as for `sidestep run`")
       ->allow_extra_args(false);
+  server
+      ->add_option("--speed", options->speed_m_s,
+                   "Speed of every moving obstacle of the scenario [m/s]")
+      ->check(NumberFrom(0.0, 100.0));
   server->add_option("--faults", options->faults, "FILE.yaml of what goes wrong, and when");
   server->add_flag("--once", options->server.once, "End with the first client");
   server->footer(
       "Speaks protocol version 5, that of libfranka 0.9: joint positions, joint velocities and\n"
-      "torques. The world stands still until the first command of the first motion, and while the\n"
-      "arm rests; times count from there. docs/hardware.md tells what is checked, and by which\n"
-      "source.");
+      "torques. The world begins with each client and stands still until the first command of its\n"
+      "first motion, and while the arm rests; times count from there. docs/hardware.md tells what\n"
+      "is checked, and by which source.");
   server->callback([&line, options] { line.exit_code = Serve(*options); });
 }
 

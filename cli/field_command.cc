@@ -47,7 +47,7 @@ struct Belief {
 Belief Watch(const Scene& scene, const FieldOptions& options) {
   const auto model = sdf::MakeWorldModel(
       bench::MakeWorldModelOptions(scene.scenario, options.reach_m, scene.world));
-  bench::SensorWatch sensor(scene.world.sensors.front());
+  bench::SensorWatch sensor(scene.world.sensors.front(), /*has_own_clock=*/false);
   bool has_seen = false;
   while (sensor.NextDue().seconds() <= options.time_s) {
     const EpisodeTime now = sensor.NextDue();

@@ -1,21 +1,25 @@
-#include <unistd.h>
-
+#include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
-#include <thread>
 
 #include "sidestep/bench/episode.h"
+#include "sidestep/bench/true_world.h"
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/hardware_world.h"
+#include "sidestep/cli/operator_log.h"
 #include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/panda_connection.h"
 #include "sidestep/cli/run_summary.h"
 #include "sidestep/cli/scenario_options.h"
 #include "sidestep/cli/stop_signals.h"
+#include "sidestep/cli/tether.h"
 #include "sidestep/cli/wiring.h"
 #include "sidestep/core/input_error.h"
+#include "sidestep/hardware/recovery.h"
 #include "sidestep/hardware/slow_move.h"
 #include "sidestep/sim/safety_of.h"
 
@@ -23,12 +27,6 @@ namespace sidestep::cli {
 namespace {
 
 constexpr const char* kDefaultAddress = "127.0.0.1";
-
-const char* NameOf(robot::fci::RobotMode mode) {
-  constexpr const char* kNames[] = {"other",  "idle",         "move",    "guiding",
-                                    "reflex", "user stopped", "recovery"};
-  return kNames[static_cast<int>(mode)];
-}
 
 struct HardwareOptions {
   ScenarioOptions scenario;
@@ -38,17 +36,28 @@ struct HardwareOptions {
   bool json = false, dry_run = false, yes = false;
 };
 
-// A scenario for a Panda, supervised by `lab` unless it or the command line says otherwise.
-Problem LoadForHardware(HardwareOptions& options, const DataPaths& paths) {
-  Overrides overrides = ParseOverrides(options.scenario);
-  if (!overrides.safety) {
-    const scenarios::Scenario asked =
-        LoadProblem(options.scenario.scenario, overrides, paths).scenario;
-    if (asked.safety.profile == scenarios::SafetyProfile::kOff) overrides.safety = "lab";
+// Who may stop a robot that moves: a person at the keyboard, and whoever started us by ending.
+class Operator {
+ public:
+  std::string WhyStop() const {
+    return signals_.count() > 0 ? signals_.first() : tether_.WhatIsGone();
   }
+  bool WantsItAtOnce() const { return signals_.count() > 1; }
+
+ private:
+  StopSignals signals_;
+  Tether tether_;
+};
+
+// A scenario for a Panda, supervised by `lab` unless it or the command line says otherwise.
+Problem LoadForHardware(const HardwareOptions& options, const DataPaths& paths) {
+  Overrides overrides = ParseOverrides(options.scenario);
   Problem problem = LoadProblem(options.scenario.scenario, overrides, paths);
   if (problem.robot.name() != "panda") {
     throw InputError("SCENARIO", "its robot must be the panda, is '" + problem.robot.name() + "'");
+  }
+  if (!overrides.safety && problem.scenario.safety.profile == scenarios::SafetyProfile::kOff) {
+    problem.scenario.safety.profile = scenarios::SafetyProfile::kLab;
   }
   if (problem.scenario.safety.profile != scenarios::SafetyProfile::kLab &&
       !IsLoopback(options.robot)) {
@@ -62,35 +71,35 @@ Problem LoadForHardware(HardwareOptions& options, const DataPaths& paths) {
 
 // Connects, looks, and plans; nothing is sent to the robot.
 int DryRun(const HardwareOptions& options, Problem problem, const DataPaths& paths) {
+  for (const auto& [flag, is_given] :
+       {std::pair("--out", !options.out.empty()), std::pair("--json", options.json)}) {
+    if (is_given) throw InputError(flag, "is of a run: --dry-run leaves no results");
+  }
   const auto driver = ConnectPanda(options.robot);
   const hardware::RobotSnapshot state = driver->ReadOnce();
   scenarios::Scenario& scenario = problem.scenario;
-  double off_rad = 0;
-  for (std::size_t j = 0; j < state.q.size(); ++j) {
-    const auto joint = static_cast<Eigen::Index>(j);
-    off_rad = std::max(off_rad, std::abs(state.q[j] - scenario.q_start(joint)));
-  }
+  Eigen::VectorXd q(static_cast<Eigen::Index>(state.q.size()));
+  std::copy(state.q.begin(), state.q.end(), q.begin());
+  const std::optional<std::string> aside = WhyNotAtStart(q, scenario);
+  const std::optional<hardware::Objection> objection = WhyNotReady(state, problem.robot);
   Print("robot            {}, protocol version {}, mode {}\n", options.robot,
-        driver->server_version(), NameOf(state.mode));
-  Print("from the start   {:.4f} rad, allowed 0.02\n", off_rad);
+        driver->server_version(), robot::fci::Name(state.mode));
+  Print("from the start   {:.4f} rad, allowed 0.02\n",
+        (q - scenario.q_start).cwiseAbs().maxCoeff());
   Print("in simulation, from the start of the task, under the same supervision:\n");
   const bench::EpisodeResult result =
       bench::RunEpisode(scenario, problem.robot, SimulatedWorlds(paths));
   PrintOutcome(result, scenario);
-  const bool is_ready = state.mode == robot::fci::RobotMode::kIdle && off_rad <= 0.02;
-  if (!is_ready)
-    PrintError("hardware run: the robot is not ready: it must be idle, at the start\n");
-  return is_ready ? 0 : 1;
+  FinishOutput();
+  if (objection) PrintError("hardware run: not ready: {}\n", objection->why);
+  if (aside) PrintError("hardware run: not ready: {}\n", *aside);
+  return objection || aside ? 1 : 0;
 }
 
-int RunOnHardware(HardwareOptions options) {
+int RunOnHardware(const HardwareOptions& options) {
   const DataPaths paths = FindDataPaths();
   Problem problem = LoadForHardware(options, paths);
   if (options.dry_run) return DryRun(options, std::move(problem), paths);
-  const std::string out = MakeOutFolder(
-      options.out.empty() ? "out/" + problem.scenario.name + "/hardware" : options.out,
-      {"trace.h5", "result.json"});
-
   const bool lockstep = options.clock == "lockstep";
   if (!lockstep && problem.scenario.latency == scenarios::Latency::kNone) {
     throw InputError("replanning.latency", "planning takes time on hardware: charged or measured");
@@ -98,25 +107,27 @@ int RunOnHardware(HardwareOptions options) {
   if (lockstep && !IsLoopback(options.robot)) {
     throw InputError("--clock", "a real robot has a clock of its own: wall");
   }
-  const StopSignals signals;
-  hardware::PandaRobot* panda = nullptr;
-  const bench::WorldFactory worlds = HardwareWorlds(
-      paths, options.robot, {sim::SafetyOf(problem.scenario, problem.robot), lockstep},
-      [&panda](hardware::PandaRobot* robot) { panda = robot; });
+  const OutFolder out(
+      options.out.empty() ? "out/" + problem.scenario.name + "/hardware" : options.out,
+      {"trace.h5", "result.json"});
+  const Operator person;
+  const bench::WorldFactory worlds =
+      HardwareWorlds(paths, options.robot,
+                     {.safety = sim::SafetyOf(problem.scenario, problem.robot),
+                      .lockstep = lockstep,
+                      .stops_at_once = [&] { return person.WantsItAtOnce(); }});
   bench::EpisodeOptions episode;
   episode.clock = lockstep ? bench::EpisodeClock::kVirtual : bench::EpisodeClock::kRobot;
-  episode.is_stopped = [&] {
-    if (signals.count() > 1 && panda != nullptr) panda->StopNow();
-    return signals.count() > 0;
-  };
+  episode.why_stop = [&] { return person.WhyStop(); };
   bench::EpisodeResult result = bench::RunEpisode(problem.scenario, problem.robot, worlds, episode);
-  KeepAndTell(result, problem.scenario, paths, out, options.json);
+  KeepAndTell(result, problem.scenario, paths, out.path(), options.json);
   return 0;
 }
 
 void AskToMove(const HardwareOptions& options, double seconds) {
   Print("The robot at {} will move to the start of the task, alone and unseeing, for {:.1f} s.\n",
         options.robot, seconds);
+  FinishOutput();
   if (options.yes) return;
   Print("Is its way free, and the stop in your hand? [y/N] ");
   FinishOutput();
@@ -126,43 +137,97 @@ void AskToMove(const HardwareOptions& options, double seconds) {
   }
 }
 
-int GoToStart(HardwareOptions options) {
+// Why it ended before it was there; else empty.
+std::string MoveAlong(hardware::PandaRobot& panda, const Trajectory& way, const Operator& person) {
+  panda.AdvanceTo(EpisodeTime(0.01));
+  panda.Submit(way, EpisodeTime(0.02));
+  const double seconds = way.t_s(way.num_states() - 1);
+  for (double t_s = 0.02; t_s < seconds + 0.5; t_s += 0.02) {
+    const std::string why_stop = person.WhyStop();
+    if (!why_stop.empty()) return why_stop;
+    panda.AdvanceTo(EpisodeTime(t_s));
+    panda.TakeControlLog();
+    panda.TakeAnswerTimes();
+  }
+  return "";
+}
+
+int GoToStart(const HardwareOptions& options) {
   const DataPaths paths = FindDataPaths();
   const Problem problem = LoadForHardware(options, paths);
   control::SafetySettings safety = sim::SafetyOf(problem.scenario, problem.robot);
-  safety.stale_s = 1e9;       // it moves unseeing
-  const StopSignals signals;  // until the robot has come to rest, below
-  hardware::PandaRobot panda(ConnectPanda(options.robot), problem.robot,
-                             {safety, options.clock == "lockstep"});
+  safety.stale_s = 1e9;            // it moves unseeing
+  std::optional<Operator> person;  // of the motion, until it has come to rest
+  const auto panda = ConnectReadyPanda(options.robot, problem.robot,
+                                       {.safety = safety,
+                                        .lockstep = options.clock == "lockstep",
+                                        .stops_at_once = [&] { return person->WantsItAtOnce(); }});
   const Trajectory way =
-      hardware::SlowMove(problem.robot, panda.Read().q, problem.scenario.q_start);
-  const double seconds = way.t_s(way.num_states() - 1);
-  AskToMove(options, seconds);
-  panda.AdvanceTo(EpisodeTime(0.01));
-  panda.Submit(way, EpisodeTime(0.02));
-  for (double t_s = 0.02; t_s < seconds + 0.5 && signals.count() == 0; t_s += 0.02) {
-    panda.AdvanceTo(EpisodeTime(t_s));
-    panda.TakeControlLog();
-  }
-  const double off_rad = (panda.Read().q - problem.scenario.q_start).cwiseAbs().maxCoeff();
-  Print("from the start   {:.4f} rad\n", off_rad);
-  for (const SafetyEvent& event : panda.TakeSafetyEvents()) {
+      hardware::SlowMove(problem.robot, panda->Read().q, problem.scenario.q_start);
+  AskToMove(options, way.t_s(way.num_states() - 1));
+  person.emplace();
+  const std::string why_stop = MoveAlong(*panda, way, *person);
+  const std::optional<std::string> aside = WhyNotAtStart(panda->Read().q, problem.scenario);
+  Print("from the start   {:.4f} rad\n",
+        (panda->Read().q - problem.scenario.q_start).cwiseAbs().maxCoeff());
+  for (const SafetyEvent& event : panda->TakeSafetyEvents()) {
     Print("supervisor       {:.3f} s: {}: {}\n", event.t.seconds(), event.check, event.reaction);
   }
-  return signals.count() == 0 && off_rad <= 0.02 ? 0 : 1;
+  FinishOutput();
+  if (!why_stop.empty()) {
+    PrintError("hardware go-to-start: it was stopped from outside: {}\n", why_stop);
+  }
+  return why_stop.empty() && !aside ? 0 : 1;
+}
+
+// What of a scenario is near the arm when it begins: until there are cameras, its obstacles are
+// virtual.
+std::vector<ObstacleState> ObstaclesOf(const scenarios::Scenario& scenario) {
+  std::vector<ObstacleState> obstacles;
+  for (const sdf::MovingShape& moving : bench::TrueMotions(scenario)) {
+    ObstacleState& obstacle = obstacles.emplace_back();
+    obstacle.X_WO = moving.X_WO(EpisodeTime(0));
+    obstacle.half_extents_m = HalfExtents(moving.shape);
+  }
+  return obstacles;
 }
 
 int Recover(const HardwareOptions& options) {
+  const DataPaths paths = FindDataPaths();
+  std::optional<Problem> problem;
+  if (!options.scenario.scenario.empty()) problem = LoadForHardware(options, paths);
+  const robot::RobotModel robot =
+      problem ? problem->robot : robot::RobotModel::Load(paths.models, "panda", Pose());
   const auto driver = ConnectPanda(options.robot);
-  try {
-    const hardware::RobotSnapshot before = driver->ReadOnce();
-    Print("mode             {}\n", NameOf(before.mode));
-    Print("last errors      {}\n", robot::fci::Text(before.last_motion_errors));
-    driver->Recover();
-    Print("mode             {}\n", NameOf(driver->ReadOnce().mode));
-  } catch (const hardware::FciError& error) {
-    PrintError("hardware recover: {}\n", error.what());
+  const OperatorLog log(options.robot);
+  const auto refuse = [&](const hardware::Objection& objection) {
+    log.Refused(objection);
+    FinishOutput();
+    PrintError("hardware recover: {}\n", objection.why);
     return 1;
+  };
+  try {
+    hardware::RecoveryRequest request;
+    request.state = driver->ReadOnce();
+    const std::string errors = robot::fci::Text(request.state.last_motion_errors);
+    Print("mode             {}\n", robot::fci::Name(request.state.mode));
+    Print("last errors      {}\n", errors);
+    if (request.state.mode == robot::fci::RobotMode::kIdle) return 0;  // there is no need
+    request.since_last_s = log.SecondsSinceRecovery();
+    const double obstacle_speed_m_s = problem ? problem->scenario.safety.obstacle_speed_m_s
+                                              : control::SafetySettings().obstacle_speed_m_s;
+    if (problem) request.obstacles = ObstaclesOf(problem->scenario);
+    if (const auto objection = WhyNotRecover(request, robot, obstacle_speed_m_s)) {
+      return refuse(*objection);
+    }
+    driver->Recover();
+    Print("mode             {}\n", robot::fci::Name(driver->ReadOnce().mode));
+    log.Recovered(errors);
+    AwaitReady(*driver, robot);
+  } catch (const hardware::NotReady& error) {
+    return refuse(error.objection());
+  } catch (const hardware::FciError& error) {
+    return refuse({control::SafetyCheck::kRecovery, error.what()});
   }
   return 0;
 }
@@ -171,16 +236,15 @@ void AddRobotOption(CLI::App& command, HardwareOptions& options) {
   command
       .add_option("--robot", options.robot,
                   "Its address; on the loopback, that of `sidestep fci-server`")
+      ->check(CLI::Validator(
+          [](std::string& address) {
+            return address.empty() ? "must be an address, is empty" : "";
+          },
+          ""))
       ->capture_default_str();
 }
 
-void AddScenario(CLI::App& command, HardwareOptions& options) {
-  AddScenarioOptions(command, options.scenario);
-  command
-      .add_option("--safety", options.scenario.overrides.safety,
-                  "Of the robot's supervisor: lab (act; the default), observe, off; the latter two "
-                  "on the loopback alone")
-      ->check(CLI::IsMember({"off", "observe", "lab"}));
+void AddClock(CLI::App& command, HardwareOptions& options) {
   command
       .add_option(
           "--clock", options.clock,
@@ -188,7 +252,6 @@ void AddScenario(CLI::App& command, HardwareOptions& options) {
           "the same bits again")
       ->check(CLI::IsMember({"wall", "lockstep"}))
       ->capture_default_str();
-  AddRobotOption(command, options);
 }
 
 }  // namespace
@@ -203,7 +266,13 @@ void AddHardwareCommand(CommandLine& line) {
       "run",
       "Run one episode on a robot; its obstacles are virtual. Ctrl-C once brakes and ends the "
       "motion, twice stops the robot, three times leaves");
-  AddScenario(*run, *options);
+  AddScenarioOptions(*run, options->scenario, KnowsNoFuture());
+  run->add_option("--safety", options->scenario.overrides.safety,
+                  "Of the robot's supervisor: lab (act; the default), observe, off; the latter two "
+                  "on the loopback alone")
+      ->check(CLI::IsMember({"off", "observe", "lab"}));
+  AddClock(*run, *options);
+  AddRobotOption(*run, *options);
   run->add_option("--out", options->out, "Folder for the results [out/SCENARIO/hardware]");
   run->add_flag("--json", options->json, "Print result.json instead of the summary");
   run->add_flag("--dry-run", options->dry_run, "Connect, look and plan; send nothing to the robot");
@@ -211,12 +280,18 @@ void AddHardwareCommand(CommandLine& line) {
 
   CLI::App* const go = hardware->add_subcommand(
       "go-to-start", "Move slowly to where the scenario's task starts, after asking");
-  AddScenario(*go, *options);
+  AddScenario(*go, options->scenario);
+  AddClock(*go, *options);
+  AddRobotOption(*go, *options);
   go->add_flag("--yes", options->yes, "Do not ask");
   go->callback([&line, options] { line.exit_code = GoToStart(*options); });
 
   CLI::App* const recover = hardware->add_subcommand(
-      "recover", "Out of a reflex, back to idle: after a person has seen to its cause");
+      "recover",
+      "Out of a reflex, back to idle: after a person has seen to its cause; once a minute at most");
+  AddScenario(*recover, options->scenario)
+      ->required(false)
+      ->description("Whose obstacles must be further off than the protective distance");
   AddRobotOption(*recover, *options);
   recover->callback([&line, options] { line.exit_code = Recover(*options); });
 }

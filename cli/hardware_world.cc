@@ -3,9 +3,11 @@
 #include <memory>
 #include <utility>
 
+#include "sidestep/cli/operator_log.h"
 #include "sidestep/cli/panda_connection.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/number_text.h"
+#include "sidestep/hardware/readiness.h"
 #include "sidestep/sim/simulation.h"
 #include "sidestep/sim/world_xml.h"
 
@@ -42,6 +44,7 @@ class VirtualObstacles final : public robot::RobotInterface {
     panda_->AdvanceTo(t);
     obstacles_.robot().AdvanceTo(t);
   }
+  std::vector<double> TakeAnswerTimes() override { return panda_->TakeAnswerTimes(); }
   std::vector<ControlSample> TakeControlLog() override { return panda_->TakeControlLog(); }
 
  private:
@@ -49,31 +52,38 @@ class VirtualObstacles final : public robot::RobotInterface {
   sim::Simulation obstacles_;  // without a robot
 };
 
-void CheckAtStart(const hardware::PandaRobot& panda, const scenarios::Scenario& scenario) {
-  Eigen::Index joint = 0;
-  const double off_rad = (panda.Read().q - scenario.q_start).cwiseAbs().maxCoeff(&joint);
-  if (off_rad <= kAtStart_rad) return;
-  throw InputError("--robot", "joint " + std::to_string(joint + 1) + " is " +
-                                  FiniteText("{:.3f}", off_rad) +
-                                  " rad from where the task starts, allowed 0.02: first "
-                                  "`sidestep hardware go-to-start`");
-}
-
 }  // namespace
 
+std::unique_ptr<hardware::PandaRobot> ConnectReadyPanda(const std::string& address,
+                                                        const robot::RobotModel& robot,
+                                                        const hardware::PandaOptions& options) {
+  auto driver = ConnectPanda(address);
+  try {
+    return std::make_unique<hardware::PandaRobot>(std::move(driver), robot, options);
+  } catch (const hardware::NotReady& error) {
+    OperatorLog(address).Refused(error.objection());
+    throw InputError("--robot", error.what());
+  } catch (const hardware::FciError& error) {
+    throw InputError("--robot", error.what());
+  }
+}
+
+std::optional<std::string> WhyNotAtStart(const Eigen::VectorXd& q,
+                                         const scenarios::Scenario& scenario) {
+  Eigen::Index joint = 0;
+  const double off_rad = (q - scenario.q_start).cwiseAbs().maxCoeff(&joint);
+  if (off_rad <= kAtStart_rad) return std::nullopt;
+  return "joint " + std::to_string(joint + 1) + " is " + FiniteText("{:.3f}", off_rad) +
+         " rad from where the task starts, allowed 0.02: first `sidestep hardware go-to-start`";
+}
+
 bench::WorldFactory HardwareWorlds(const DataPaths& paths, const std::string& address,
-                                   const hardware::PandaOptions& options,
-                                   const std::function<void(hardware::PandaRobot*)>& on_connected) {
+                                   const hardware::PandaOptions& options) {
   return [=](const scenarios::Scenario& scenario, const robot::RobotModel& robot) {
-    auto driver = ConnectPanda(address);
-    std::unique_ptr<hardware::PandaRobot> panda;
-    try {
-      panda = std::make_unique<hardware::PandaRobot>(std::move(driver), robot, options);
-    } catch (const hardware::FciError& error) {
-      throw InputError("--robot", error.what());
+    auto panda = ConnectReadyPanda(address, robot, options);
+    if (const auto aside = WhyNotAtStart(panda->Read().q, scenario)) {
+      throw InputError("--robot", *aside);
     }
-    CheckAtStart(*panda, scenario);
-    on_connected(panda.get());
     const auto stage = std::make_shared<VirtualObstacles>(std::move(panda), scenario, paths);
     bench::EpisodeWorld world;
     world.robot = stage.get();

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 
 #include "sidestep/bench/episode_world.h"
@@ -9,13 +10,21 @@
 
 namespace sidestep::cli {
 
+/// Connects to the Panda at `address` and sets it up. @throws InputError, blaming --robot, if
+/// nobody answers there, or it is not to be moved as it is (which the operator's log keeps).
+std::unique_ptr<hardware::PandaRobot> ConnectReadyPanda(const std::string& address,
+                                                        const robot::RobotModel& robot,
+                                                        const hardware::PandaOptions& options);
+
+/// Why an arm at `q` is not where the scenario's task starts, if it is not.
+std::optional<std::string> WhyNotAtStart(const Eigen::VectorXd& q,
+                                         const scenarios::Scenario& scenario);
+
 /// Makes worlds in which a Panda at the end of a wire stands, and the scenario's obstacles move as
 /// they are prescribed ("virtual obstacles"): its sensor sees those, and nobody knows whether the
 /// arm touches anything real. Each world connects anew.
-/// @param on_connected is shown the robot; it may be told to stop as long as the world lives.
 /// The factory throws InputError if nobody answers, or the robot is not where the task starts.
 bench::WorldFactory HardwareWorlds(const DataPaths& paths, const std::string& address,
-                                   const hardware::PandaOptions& options,
-                                   const std::function<void(hardware::PandaRobot*)>& on_connected);
+                                   const hardware::PandaOptions& options);
 
 }  // namespace sidestep::cli

@@ -17,12 +17,16 @@ constexpr int kDone = 0, kFailed = 1, kBadInput = 2;
 
 // One line, whatever the message holds.
 int Complain(std::string message, int exit_code) {
+  try {
+    sidestep::cli::FinishOutput();  // what was said before comes before
+  } catch (const sidestep::InputError&) {
+  }
   std::replace(message.begin(), message.end(), '\n', ' ');
   sidestep::cli::PrintErrorText(message + "\n");
   return exit_code;
 }
 
-// CLI11 would only say that a command is missing.
+// CLI11 would only say that a command is missing. A word after `app` that is no flag must be one.
 void CheckCommandName(const CLI::App& app, const std::string& name) {
   std::string known;
   const auto is_named = [&](const CLI::App* command) { return command->get_name() == name; };
@@ -30,7 +34,8 @@ void CheckCommandName(const CLI::App& app, const std::string& name) {
   for (const CLI::App* const command : sidestep::cli::Commands(app)) {
     known += (known.empty() ? "" : ", ") + command->get_name();
   }
-  throw sidestep::InputError("sidestep", "no command '" + name + "' (there are: " + known + ")");
+  throw sidestep::InputError(app.get_name(),
+                             "no command '" + name + "' (there are: " + known + ")");
 }
 
 int Run(int argc, char** argv) {
@@ -62,7 +67,11 @@ int Run(int argc, char** argv) {
   sidestep::cli::AddHardwareCommand(line);
   sidestep::cli::AddFciServerCommand(line);
   sidestep::cli::AddManualCommand(line);
-  if (argc > 1 && argv[1][0] != '-') CheckCommandName(line.app, argv[1]);
+  const CLI::App* app = &line.app;
+  for (int i = 1; i < argc && argv[i][0] != '-' && !sidestep::cli::Commands(*app).empty(); ++i) {
+    CheckCommandName(*app, argv[i]);
+    app = app->get_subcommand(argv[i]);
+  }
   try {
     line.app.parse(argc, argv);
   } catch (const CLI::Success& help) {

@@ -1,5 +1,6 @@
 #include "sidestep/cli/panda_connection.h"
 
+#include "sidestep/cli/operator_log.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/hardware/libfranka_driver.h"
 #include "sidestep/hardware/raw_fci_driver.h"
@@ -21,6 +22,9 @@ std::unique_ptr<hardware::FciDriver> ConnectPanda(const std::string& address) {
     if (!IsLoopback(address)) return hardware::MakeLibfrankaDriver(address, {});
     return std::make_unique<hardware::RawFciDriver>(numeric);
   } catch (const hardware::FciError& error) {
+    if (error.kind() == hardware::FciError::Kind::kVersion) {
+      OperatorLog(address).Refused({control::SafetyCheck::kConfiguration, error.what()});
+    }
     const std::string hint =
         IsLoopback(address) && error.kind() == hardware::FciError::Kind::kNetwork
             ? " (`sidestep fci-server` starts a simulated one)"

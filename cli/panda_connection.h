@@ -11,7 +11,8 @@ namespace sidestep::cli {
 bool IsLoopback(const std::string& address);
 
 /// Connects to the Panda at `address`. @throws InputError, blaming --robot, if nobody answers
-/// there, or it is a real robot and this program has no libfranka.
+/// there, it speaks another version (which the operator's log keeps), or it is a real robot and
+/// this program has no libfranka.
 std::unique_ptr<hardware::FciDriver> ConnectPanda(const std::string& address);
 
 }  // namespace sidestep::cli

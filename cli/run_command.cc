@@ -31,23 +31,23 @@ int Run(const RunOptions& options) {
   const Problem problem =
       LoadProblem(options.scenario.scenario, ParseOverrides(options.scenario), paths);
   WarnOfThinThings(problem.scenario);
-  const std::string out = MakeOutFolder(
-      options.out.empty() ? "out/" + problem.scenario.name + "/" + problem.scenario.knowledge
-                          : options.out,
-      {"trace.h5", "result.json"});
-  const StopSignals signals;
-  const bench::EpisodeOptions episode = {.observe_field = {},
-                                         .is_stopped = [&] { return signals.count() > 0; },
-                                         .clock = options.clock == "wall"
-                                                      ? bench::EpisodeClock::kWall
-                                                      : bench::EpisodeClock::kVirtual};
   if (options.clock == "wall" && problem.scenario.latency == scenarios::Latency::kNone) {
     throw InputError("--clock",
                      "on a wall clock planning takes time: --latency charged or measured");
   }
+  const OutFolder out(options.out.empty()
+                          ? "out/" + problem.scenario.name + "/" + problem.scenario.knowledge
+                          : options.out,
+                      {"trace.h5", "result.json"});
+  const StopSignals signals;
+  const bench::EpisodeOptions episode = {.observe_field = {},
+                                         .why_stop = [&] { return signals.first(); },
+                                         .clock = options.clock == "wall"
+                                                      ? bench::EpisodeClock::kWall
+                                                      : bench::EpisodeClock::kVirtual};
   bench::EpisodeResult result =
       bench::RunEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths), episode);
-  KeepAndTell(result, problem.scenario, paths, out, options.json);
+  KeepAndTell(result, problem.scenario, paths, out.path(), options.json);
   return 0;
 }
 

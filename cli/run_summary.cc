@@ -63,6 +63,11 @@ void PrintOutcome(const bench::EpisodeResult& result, const scenarios::Scenario&
           metrics.at("samples_outside_grid"));
   }
   PrintPlanningTime(result, scenario);
+  if (!result.answers_s.empty()) {
+    Print("answers          {:.0f} us at p99.9, the longest {:.0f} us, of {}\n",
+          1e6 * bench::Quantile(result.answers_s, 0.999),
+          1e6 * bench::Quantile(result.answers_s, 1), result.answers_s.size());
+  }
   if (!result.safety_events.empty()) {
     Print("supervisor       {} findings, the first at {:.3f} s: {}\n", result.safety_events.size(),
           result.safety_events.front().t.seconds(), result.safety_events.front().check);

@@ -1,26 +1,38 @@
 #include "sidestep/cli/scenario_options.h"
 
 #include "sidestep/cli/number_range.h"
+#include "sidestep/core/joined.h"
+#include "sidestep/sdf/world_model.h"
 
 namespace sidestep::cli {
 
-void AddScenarioOptions(CLI::App& command, ScenarioOptions& options) {
-  Overrides& overrides = options.overrides;
-  command.add_option("SCENARIO", options.scenario, "A name (see `sidestep list`) or a path")
-      ->required();
+CLI::Option* AddScenario(CLI::App& command, ScenarioOptions& options) {
   command
       .add_option("--set", options.settings,
                   "KEY=VALUE: one of the scenario's choices (pair=3), or any key of its file by "
                   "its path (planner.qc=2, moving_obstacles[0].name=cart); may be repeated")
       ->allow_extra_args(false);
+  return command.add_option("SCENARIO", options.scenario, "A name (see `sidestep list`) or a path")
+      ->required();
+}
+
+void AddScenarioOptions(CLI::App& command, ScenarioOptions& options,
+                        const std::vector<std::string>& knowledge) {
+  AddScenario(command, options);
+  Overrides& overrides = options.overrides;
   command.add_option("--knowledge", overrides.knowledge,
-                     "What the planner is told: static, execute_and_update, prediction, "
-                     "full_knowledge");
+                     "What the planner is told: " + Joined(knowledge));
   command.add_option("--predictor", overrides.predictor, "How objects are extrapolated");
   command.add_option("--speed", overrides.speed_m_s, "Speed of every moving obstacle [m/s]")
       ->check(NumberFrom(0.0, 100.0));
   command.add_option("--seed", overrides.seed, "Seed of everything random")
       ->check(NumberFrom(0, 2147483647));
+}
+
+std::vector<std::string> KnowsNoFuture() {
+  std::vector<std::string> words = KnowledgeWords();
+  std::erase(words, sdf::ToString(sdf::Knowledge::kFullKnowledge));
+  return words;
 }
 
 Overrides ParseOverrides(const ScenarioOptions& options) {

@@ -16,8 +16,16 @@ struct ScenarioOptions {
   std::vector<std::string> settings;  ///< KEY=VALUE
 };
 
-/// Adds SCENARIO, --set, --knowledge, --predictor, --speed and --seed.
-void AddScenarioOptions(CLI::App& command, ScenarioOptions& options);
+/// Adds SCENARIO and --set, for who wants to know where things are. @return SCENARIO.
+CLI::Option* AddScenario(CLI::App& command, ScenarioOptions& options);
+
+/// The same, and --knowledge, --predictor, --speed and --seed.
+/// @param knowledge the words that it may be.
+void AddScenarioOptions(CLI::App& command, ScenarioOptions& options,
+                        const std::vector<std::string>& knowledge = KnowledgeWords());
+
+/// The kinds of knowledge where nobody can know the future.
+std::vector<std::string> KnowsNoFuture();
 
 /// All that was asked for. @throws InputError for a setting that is none.
 Overrides ParseOverrides(const ScenarioOptions& options);

@@ -132,8 +132,10 @@ bench::TableAxes ChooseAxes(const std::vector<bench::Factors>& cases, bench::Tab
   }
   const auto check = [&](const char* flag, const std::string& factor) {
     if (factor.empty() || cases.front().count(factor) != 0) return;
-    throw InputError(flag, "'" + factor + "' is no factor of this study" +
-                               (known.empty() ? "" : " (there are: " + known + ")"));
+    throw InputError(flag, "'" + factor + "' is no factor of this study (" +
+                               (known.empty() ? "it has none: nothing is given to vary"
+                                              : "there are: " + known) +
+                               ")");
   };
   check("--down", axes.down);
   check("--across", axes.across);

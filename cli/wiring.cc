@@ -24,7 +24,12 @@ void Override(scenarios::Scenario& scenario, const Overrides& overrides) {
   if (overrides.predictor) scenario.predictor = *overrides.predictor;
   if (overrides.latency) scenario.latency = scenarios::LatencyFromString(*overrides.latency);
   if (overrides.safety) scenario.safety.profile = scenarios::SafetyFromString(*overrides.safety);
-  if (overrides.latency_ms) scenario.latency_s = *overrides.latency_ms / 1e3;
+  if (overrides.latency_ms) {
+    if (scenario.latency == scenarios::Latency::kNone) {
+      throw InputError("--latency-ms", "nothing is charged: the latency is none");
+    }
+    scenario.latency_s = *overrides.latency_ms / 1e3;
+  }
   if (overrides.epsilon_m) {
     scenario.epsilon_m = *overrides.epsilon_m;
     if (scenario.epsilon_m > scenarios::kMaxMarginCells * scenario.grid.cell_m) {

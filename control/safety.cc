@@ -30,6 +30,16 @@ const char* ToString(SafetyCheck check) {
       return "link";
     case SafetyCheck::kRobotMode:
       return "robot_mode";
+    case SafetyCheck::kRecovery:
+      return "recovery";
+    case SafetyCheck::kOperatorStop:
+      return "operator_stop";
+    case SafetyCheck::kConfiguration:
+      return "configuration";
+    case SafetyCheck::kSlowAnswer:
+      return "slow_answer";
+    case SafetyCheck::kClockJump:
+      return "clock_jump";
     case SafetyCheck::kObstacleTooFast:
       return "obstacle_too_fast";
   }
@@ -51,6 +61,8 @@ const char* ToString(Reaction reaction) {
       return "hold";
     case Reaction::kBrake:
       return "brake";
+    case Reaction::kAbort:
+      return "abort";
   }
   return "";
 }

@@ -14,7 +14,8 @@ enum class SafetyProfile {
   kLab       ///< it acts
 };
 
-/// What it looks for. Numbers are those of the table in docs/safety.md.
+/// What it looks for; 15 to 19 are looked for by those who drive a robot. Numbers are those of the
+/// table in docs/safety.md.
 enum class SafetyCheck {
   kPerceptionStale = 1,   ///< no scan has been accepted for too long
   kObstacleLost = 2,      ///< one that was followed has not been seen for too long
@@ -28,6 +29,11 @@ enum class SafetyCheck {
   kExternalTorque = 12,   ///< something pushes
   kLink = 13,             ///< packets are lost
   kRobotMode = 14,        ///< the robot says that it is not fit to move
+  kRecovery = 15,         ///< a person asks for a recovery that is not to be
+  kOperatorStop = 16,     ///< a person stops it, or nobody attends it any more
+  kConfiguration = 17,    ///< it is not set up as the robot that is planned for
+  kSlowAnswer = 18,       ///< an answer to the robot took too long to make
+  kClockJump = 19,        ///< a sensor's clock and ours have moved against each other
   kObstacleTooFast = 20,  ///< an obstacle is faster than was declared
 };
 inline constexpr int kNumSafetyChecks = 21;
@@ -39,8 +45,9 @@ enum class Reaction {
   kRefuse,  ///< the plan is not followed: the robot brakes until another one begins
   kHold,    ///< brakes; goes on when the cause has been gone for resume_s and a new plan begins
   kBrake,   ///< brakes, and stays until a person rearms it
+  kAbort,   ///< the motion ends at once: the robot stops by itself
 };
-/// "none", "refuse", "hold", "brake".
+/// "none", "refuse", "hold", "brake", "abort".
 const char* ToString(Reaction reaction);
 
 /// What the supervisor found, when it found it.

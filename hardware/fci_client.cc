@@ -29,13 +29,22 @@ fci::CommandLink Connect(const std::string& address) {
 FciClient::FciClient(const std::string& address) : link_(Connect(address)), states_("0.0.0.0") {
   const auto id = Send(fci::Request::kConnect,
                        fci::ToBytes(fci::ConnectRequest{fci::kVersion, states_.port()}));
-  const fci::Bytes reply = AwaitReply(id);
+  const fci::Bytes reply = AwaitWelcome(id, address);
   if (reply.size() != 3) throw FciError(FciError::Kind::kNetwork, address + ": is no robot");
   server_version_ = reply[1] + 256 * reply[2];
   if (reply[0] != fci::status::kSuccess) {
     throw FciError(FciError::Kind::kVersion,
                    address + ": the robot speaks version " + std::to_string(server_version_) +
                        " of the protocol, this program " + std::to_string(fci::kVersion));
+  }
+}
+
+fci::Bytes FciClient::AwaitWelcome(std::uint32_t id, const std::string& address) {
+  try {
+    return AwaitReply(id);
+  } catch (const FciError& error) {
+    throw FciError(error.kind(), address + ": " + error.what() +
+                                     ": another program may be connected to the robot");
   }
 }
 

@@ -40,6 +40,7 @@ class FciClient {
   void Answer(const robot::fci::RobotCommand& command);
 
  private:
+  robot::fci::Bytes AwaitWelcome(std::uint32_t id, const std::string& address);
   std::optional<robot::fci::RobotState> NewestState();
   void CollectReplies();  // under mutex_, as the next
   void ThrowIfEnded() const;

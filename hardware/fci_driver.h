@@ -18,7 +18,8 @@ struct RobotSnapshot {
   robot::fci::Joints q_d{}, dq_d{}, ddq_d{};  ///< the motion that the robot follows
   robot::fci::Joints tau_J{}, tau_ext{};
   robot::fci::Wrench O_F_ext{};
-  robot::fci::Matrix4 O_T_EE{};  ///< column by column
+  robot::fci::Matrix4 O_T_EE{}, F_T_EE{};  ///< column by column
+  double load_kg = 0;                      ///< that it is told it carries beside its hand
   robot::fci::RobotMode mode = robot::fci::RobotMode::kOther;
   robot::fci::ErrorSet errors, last_motion_errors;
   double success_rate = 0;  ///< of the last 100 commands

@@ -57,6 +57,8 @@ RobotSnapshot SnapshotOf(const franka::RobotState& state) {
   snapshot.tau_ext = state.tau_ext_hat_filtered;
   snapshot.O_F_ext = state.O_F_ext_hat_K;
   snapshot.O_T_EE = state.O_T_EE;
+  snapshot.F_T_EE = state.F_T_EE;
+  snapshot.load_kg = state.m_load;
   snapshot.mode = ModeOf(state.robot_mode);
   snapshot.errors = ErrorsOf(state.current_errors);
   snapshot.last_motion_errors = ErrorsOf(state.last_motion_errors);

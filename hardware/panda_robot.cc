@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "sidestep/core/number_text.h"
+#include "sidestep/hardware/readiness.h"
 #include "sidestep/robot/robot_error.h"
 
 namespace sidestep::hardware {
@@ -18,6 +19,9 @@ constexpr int kTicksPerSecond = 1000;
 constexpr std::size_t kLogLength = 4096;
 // Identical commands before the end of a motion: a real arm has settled by then.
 constexpr int kTicksToSettle = 250;
+
+// What Franka's documentation leaves for an answer (frankaemika/docs, requirements.rst).
+constexpr double kSlowAnswer_s = 300e-6;
 
 // Of the robot's limits, without a supervisor that keeps more: its controller judges what it is
 // sent by differences, and stops where they reach a limit.
@@ -92,13 +96,9 @@ PandaRobot::PandaRobot(std::unique_ptr<FciDriver> driver, const robot::RobotMode
       follower_(SevenJoints(robot),
                 control::TrackerLimits::Of(robot, kSpeedShare, kAccelerationShare, kJerkShare),
                 WithTorques(options.safety)),
-      seen_(kLogLength) {
-  const RobotSnapshot state = driver_->ReadOnce();
-  if (state.mode != robot::fci::RobotMode::kIdle) {
-    throw FciError(FciError::Kind::kRefused,
-                   "the robot is not idle: it is stopped, held by hand, or in a reflex; see to the "
-                   "cause, then `sidestep hardware recover`");
-  }
+      seen_(kLogLength),
+      answered_(kLogLength) {
+  const RobotSnapshot state = AwaitReady(*driver_, robot);
   driver_->Configure(SettingsFor(robot));
   latest_ = {EpisodeTime(0), VectorOf(state.q), VectorOf(state.dq)};
 }
@@ -109,6 +109,10 @@ PandaRobot::~PandaRobot() {
   is_ending_ = true;
   allowed_ticks_ = std::numeric_limits<std::int64_t>::max();
   allowed_ticks_.notify_all();
+  while (!has_ended_) {
+    StopIfAsked();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
   thread_.join();
 }
 
@@ -135,12 +139,15 @@ void PandaRobot::AdvanceTo(EpisodeTime t) {
   }
   for (Collect(); latest_tick_ < tick; Collect()) {
     if (has_ended_) Fail();
+    StopIfAsked();
     std::this_thread::sleep_for(std::chrono::microseconds(options_.lockstep ? 20 : 200));
   }
   CheckPace();
 }
 
 std::vector<ControlSample> PandaRobot::TakeControlLog() { return std::exchange(log_, {}); }
+
+std::vector<double> PandaRobot::TakeAnswerTimes() { return std::exchange(answers_s_, {}); }
 
 std::vector<SafetyEvent> PandaRobot::TakeSafetyEvents() {
   return std::exchange(safety_events_, {});
@@ -160,17 +167,23 @@ void PandaRobot::Run() {
 Command PandaRobot::Answer(const RobotSnapshot& state, int elapsed_ms) {
   if (elapsed_ms == 0) first_ms_ = state.time_ms;
   const auto tick = static_cast<std::int64_t>(state.time_ms - first_ms_);
-  const control::JointVector q = VectorOf(state.q), v = VectorOf(state.dq);
-  seen_.Append({tick, q, v});
+  seen_.Append({tick, VectorOf(state.q), VectorOf(state.dq)});
   if (options_.lockstep) {
     for (std::int64_t allowed = allowed_ticks_; allowed <= tick; allowed = allowed_ticks_) {
       allowed_ticks_.wait(allowed);
     }
   }
+  const auto begin = options_.now();
+  const Command command = MakeAnswer(state, elapsed_ms, tick);
+  answered_.Append(std::chrono::duration<double>(options_.now() - begin).count());
+  return command;
+}
+
+Command PandaRobot::MakeAnswer(const RobotSnapshot& state, int elapsed_ms, std::int64_t tick) {
   control::Measured measured;
   measured.t = TimeOf(tick);
-  measured.q = q;
-  measured.v = v;
+  measured.q = VectorOf(state.q);
+  measured.v = VectorOf(state.dq);
   measured.commanded = {VectorOf(state.q_d), VectorOf(state.dq_d), VectorOf(state.ddq_d)};
   measured.torque = VectorOf(state.tau_J);
   measured.tau_ext = VectorOf(state.tau_ext);
@@ -204,6 +217,14 @@ void PandaRobot::Collect() {
                               control::ToString(found.reaction), found.value, found.limit});
     if (found.reaction == control::Reaction::kBrake) why_ = control::Describe(found);
   });
+  answered_.Drain([this](double seconds) {
+    answers_s_.push_back(seconds);
+    // In lock-step nothing is late. All of them are told in the end; the first at once.
+    if (options_.lockstep || was_slow_ || seconds <= kSlowAnswer_s) return;
+    was_slow_ = true;
+    safety_events_.push_back({latest_.t, control::ToString(control::SafetyCheck::kSlowAnswer),
+                              control::ToString(control::Reaction::kNone), seconds, kSlowAnswer_s});
+  });
 }
 
 // A server in lock-step answers as fast as it is answered.
@@ -216,13 +237,40 @@ void PandaRobot::CheckPace() const {
       "the robot's clock runs faster than real time: for a server in lock-step, --clock lockstep");
 }
 
+void PandaRobot::StopIfAsked() noexcept {
+  if (is_stopped_at_once_ || !options_.stops_at_once || !options_.stops_at_once()) return;
+  is_stopped_at_once_ = true;
+  try {
+    safety_events_.push_back({latest_.t, control::ToString(control::SafetyCheck::kOperatorStop),
+                              control::ToString(control::Reaction::kAbort), 0, 0});
+    driver_->Stop();
+  } catch (const std::exception&) {  // there is nobody to stop any more
+  }
+}
+
 void PandaRobot::Fail() {
   try {
     if (failure_ != nullptr) std::rethrow_exception(failure_);
     throw robot::RobotError("the robot's motion has ended");
   } catch (const FciError& error) {
-    why_ = error.what();
-    throw robot::RobotError(error.what(), SamplesOf(error.log(), first_ms_));
+    why_ = error.what() + HintOf(error);
+    throw robot::RobotError(why_, SamplesOf(error.log(), first_ms_));
+  }
+}
+
+// What else is known of a motion's end.
+std::string PandaRobot::HintOf(const FciError& error) const {
+  const bool lost =
+      robot::fci::Holds(error.errors(), robot::fci::Error::kCommunicationConstraintsViolation);
+  if (lost && options_.lockstep) {
+    return "; --clock lockstep is for a server that waits for each answer: `sidestep fci-server "
+           "--clock lockstep`, where --grace says how long";
+  }
+  if (error.kind() != FciError::Kind::kAborted) return "";
+  try {  // such as by a hand that guides the arm
+    return std::string("; its mode is now '") + robot::fci::Name(driver_->ReadOnce().mode) + "'";
+  } catch (const FciError&) {
+    return "";
   }
 }
 

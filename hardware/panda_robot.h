@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <string>
 #include <thread>
@@ -23,6 +24,11 @@ struct PandaOptions {
   /// advanced to, so that a run is as repeatable as a simulated one. Without it the robot's clock
   /// is its own.
   bool lockstep = false;
+  /// Asked whenever it waits for the robot, at its end too: once it says true the motion ends at
+  /// once, and the robot stops by itself.
+  std::function<bool()> stops_at_once;
+  /// By which answers are timed; a test's may say that they are slow.
+  std::chrono::steady_clock::time_point (*now)() = &std::chrono::steady_clock::now;
 };
 
 /// A Panda behind its control interface as a robot that follows trajectories: a thread answers each
@@ -32,9 +38,10 @@ struct PandaOptions {
 /// Its episode begins when it is first advanced; until then nothing is sent to it.
 class PandaRobot final : public robot::RobotInterface {
  public:
-  /// Sets stiffness and collision thresholds. @param driver of a robot that is idle.
-  /// @throws FciError; std::invalid_argument for a robot that has not 7 joints, or no capsules and
-  /// is to be supervised.
+  /// Sets stiffness and collision thresholds.
+  /// @throws NotReady (readiness.h) for a robot that is not to be moved as it is; FciError;
+  /// std::invalid_argument for a robot that has not 7 joints, or no capsules and is to be
+  /// supervised.
   PandaRobot(std::unique_ptr<FciDriver> driver, const robot::RobotModel& robot,
              const PandaOptions& options);
   /// Brakes, waits until it is at rest, and ends the motion as the robot wants it ended.
@@ -49,9 +56,7 @@ class PandaRobot final : public robot::RobotInterface {
   /// Waits until the robot's clock is there. @throws RobotError as soon as the motion has ended.
   void AdvanceTo(EpisodeTime t) override;
   std::vector<ControlSample> TakeControlLog() override;
-
-  /// Ends the motion at once: the robot stops by itself. From any thread.
-  void StopNow() { driver_->Stop(); }
+  std::vector<double> TakeAnswerTimes() override;
 
   /// Ticks that nobody took in time to record them.
   std::size_t lost_ticks() const { return follower_.lost_ticks(); }
@@ -60,9 +65,12 @@ class PandaRobot final : public robot::RobotInterface {
   void Begin();
   void Run();
   Command Answer(const RobotSnapshot& state, int elapsed_ms);
+  Command MakeAnswer(const RobotSnapshot& state, int elapsed_ms, std::int64_t tick);
   void Collect();
   void CheckPace() const;
+  void StopIfAsked() noexcept;
   [[noreturn]] void Fail();
+  std::string HintOf(const FciError& error) const;
 
   std::unique_ptr<FciDriver> driver_;
   const PandaOptions options_;
@@ -76,6 +84,7 @@ class PandaRobot final : public robot::RobotInterface {
     control::JointVector q, v;
   };
   control::RingLog<Seen> seen_;
+  control::RingLog<double> answered_;  // how long each answer took [s]
   std::atomic<std::int64_t> allowed_ticks_{0};
   std::atomic<bool> is_ending_{false}, has_ended_{false};
   std::exception_ptr failure_;  // to be read once it has ended
@@ -90,6 +99,9 @@ class PandaRobot final : public robot::RobotInterface {
   std::vector<ControlSample> log_;
   std::vector<SafetyEvent> safety_events_;
   std::string why_;
+  bool is_stopped_at_once_ = false;
+  std::vector<double> answers_s_;
+  bool was_slow_ = false;
 };
 
 }  // namespace sidestep::hardware

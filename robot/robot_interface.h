@@ -50,6 +50,10 @@ class RobotInterface {
   /// What its safety supervisor has found since the last call.
   virtual std::vector<SafetyEvent> TakeSafetyEvents() { return {}; }
 
+  /// How long each command since the last call took to make, in real time [s]; none where nobody
+  /// waited for it.
+  virtual std::vector<double> TakeAnswerTimes() { return {}; }
+
   /// The simulator steps to time `t`; hardware waits for it. Never goes back.
   /// @throws RobotError if the robot has failed.
   virtual void AdvanceTo(EpisodeTime t) = 0;

@@ -61,6 +61,14 @@ void World::Step(const Eigen::VectorXd& torque) {
   ComputeWhatFollows();
 }
 
+void World::BeginAnew() {
+  ticks_ = 0;
+  data_->time = 0;
+  for (const Joint& joint : joints_) data_->qvel[joint.dof] = 0;
+  MoveObstacles();
+  ComputeWhatFollows();
+}
+
 void World::ComputeWhatFollows() {
   mj_step1(model_.get(), data_.get());
   while (LacksContactRoom(*data_) && DoubleContactRoom(model_.get(), &data_)) {

@@ -33,6 +33,9 @@ class World {
   /// @throws SimulationError, with the time, if the state diverges.
   void Step(const Eigen::VectorXd& torque);
 
+  /// At time 0 again, with the arm where it is now, at rest.
+  void BeginAnew();
+
   std::int64_t ticks() const { return ticks_; }
   EpisodeTime time() const { return TimeOf(ticks_); }
   static EpisodeTime TimeOf(std::int64_t tick) {

@@ -34,6 +34,10 @@ const std::vector<Craft> kCrafts = {
     {"std::printf(", "cli/console", "prints"},
     {"std::fprintf(", "cli/console", "prints"},
     {"std::cout", "cli/console", "prints"},
+    {"system_clock", "cli/operator_log", "asks for the time of day"},
+    {"std::time(", "cli/operator_log", "asks for the time of day"},
+    {"CLOCK_REALTIME", "cli/operator_log", "asks for the time of day"},
+    {"gettimeofday(", "cli/operator_log", "asks for the time of day"},
 };
 // Random numbers of the C++ library and of Eigen.
 const Names kForeignRandom = {"<random>",           "_distribution<",

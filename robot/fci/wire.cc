@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cstring>
+#include <iterator>
 #include <stdexcept>
 
 namespace sidestep::robot::fci {
@@ -76,6 +77,12 @@ RobotCommand DecodeRobotCommand(const Bytes& bytes) {
 }
 
 std::size_t PayloadSize(Request request) { return Facts(request).payload_size; }
+const char* Name(RobotMode mode) {
+  constexpr const char* kNames[] = {"other",  "idle",         "move",    "guiding",
+                                    "reflex", "user stopped", "recovery"};
+  const auto number = static_cast<std::size_t>(mode);
+  return kNames[number < std::size(kNames) ? number : 0];
+}
 const char* Name(Request request) { return Facts(request).name; }
 
 Bytes ConnectReply(std::uint8_t status, std::uint16_t version) {

@@ -34,6 +34,8 @@ enum class RobotMode : std::uint8_t {
   kUserStopped,
   kRecovery
 };
+/// "idle", "user stopped", ...
+const char* Name(RobotMode mode);
 
 enum class MotionGenerator : std::uint8_t {
   kIdle,

@@ -18,6 +18,9 @@ class FaultPlayer {
   /// kGuiding, kError, kCutLink.
   std::vector<Fault> Begin(double t_s, const robot::fci::Joints& q);
 
+  /// Time begins at 0 again: what lasts has been.
+  void BeginAnew() { lasting_.clear(); }
+
   /// A motion begins: what earlier ones would have lost is forgotten.
   void BeginMotion() { lost_commands_ = lost_states_ = 0; }
   /// Whether the state of this tick is lost on its way.

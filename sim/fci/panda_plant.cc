@@ -86,6 +86,12 @@ Joints PandaPlant::motor_torque() const {
   return torque;
 }
 
+void PandaPlant::BeginAnew() {
+  disturbance_ = {};
+  world_.BeginAnew();
+  if (after_step_) after_step_();
+}
+
 void PandaPlant::Step(const Joints& torque, const Joints& disturbance) {
   disturbance_ = disturbance;
   const Eigen::Map<const JointVector> motors(torque.data()), others(disturbance.data());

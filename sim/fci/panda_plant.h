@@ -21,12 +21,15 @@ class PandaPlant {
   /// @throws std::invalid_argument for a robot that has not seven joints.
   PandaPlant(const robot::RobotModel& robot, World* world);
 
-  /// Called after each step, by who judges what happens in the world.
+  /// Called after each step and each new beginning, by who judges what happens in the world.
   void AfterStep(std::function<void()> call) { after_step_ = std::move(call); }
 
   /// One tick on. `torque`: of the motors, without gravity, which is added; `disturbance`: what
   /// acts on the joints besides (friction, a ramp), unknown to the controller [N m].
   void Step(const robot::fci::Joints& torque, const robot::fci::Joints& disturbance);
+
+  /// At time 0 again, with the arm where it is, at rest.
+  void BeginAnew();
 
   double time_s() const { return world_.time().seconds(); }
   robot::fci::Joints q() const;

@@ -22,8 +22,15 @@ constexpr microseconds kAskAgain(50000);  // how long to wait without a look at 
 // One client, from its Connect to its end.
 class Session {
  public:
-  Session(SimulatedPanda& panda, const ServerOptions& options, CommandLink link)
-      : panda_(panda), options_(options), link_(std::move(link)), states_(options.address) {}
+  /// @param turn_away the clients that wait at `door`.
+  Session(SimulatedPanda& panda, const ServerOptions& options, CommandLink link, int door,
+          std::function<void()> turn_away)
+      : panda_(panda),
+        options_(options),
+        link_(std::move(link)),
+        states_(options.address),
+        door_(door),
+        turn_away_(std::move(turn_away)) {}
 
   /// @return an empty text, or why the client was not taken.
   std::string Connect(const std::function<bool()>& stop);
@@ -31,6 +38,7 @@ class Session {
 
  private:
   void HandleRequests();
+  void TurnAwayOthers();
   bool SendState();
   void SendReplies();
   std::optional<RobotCommand> ReceiveAnswer();
@@ -43,6 +51,8 @@ class Session {
   const ServerOptions& options_;
   CommandLink link_;
   DatagramPort states_;
+  int door_;
+  std::function<void()> turn_away_;
   std::uint64_t state_id_ = 0;  // of the latest state sent
   bool answered_last_ = true;
   int unanswered_ = 0;  // states of a motion before its first command
@@ -171,11 +181,19 @@ void Session::StepByTheWall() {
   panda_.Tick(answer);
 }
 
+// Somebody waits: who had gone by the time that he came is noticed first.
+void Session::TurnAwayOthers() {
+  if (!robot::fci::WaitToRead({door_}, microseconds(0))) return;
+  HandleRequests();
+  turn_away_();
+}
+
 void Session::Run(const std::function<bool()>& stop) {
   auto asked = Clock::now();
   for (;;) {
     if (Clock::now() - asked > kAskAgain) {
       if (stop()) return;
+      TurnAwayOthers();
       asked = Clock::now();
     }
     if (panda_.TakeLinkCut()) throw robot::fci::LinkClosed("the network is cut");
@@ -204,12 +222,13 @@ void Server::Tell(const std::string& what) const {
 void Server::Serve(CommandLink link, const std::function<bool()>& stop) {
   Tell("connected from " + link.peer_address());
   try {
-    Session session(panda_, options_, std::move(link));
+    Session session(panda_, options_, std::move(link), listener_.fd(), [this] { TurnAway(); });
     const std::string refusal = session.Connect(stop);
     if (!refusal.empty()) {
       Tell("client refused: " + refusal);
       return;
     }
+    panda_.BeginAnew();
     session.Run(stop);
   } catch (const robot::fci::LinkError& error) {
     Tell(std::string("disconnected: ") + error.what());
@@ -220,10 +239,26 @@ void Server::Serve(CommandLink link, const std::function<bool()>& stop) {
   panda_.TakeReplies();
 }
 
+// The robot has one client at a time.
+void Server::TurnAway() {
+  while (const auto link = listener_.Accept()) {
+    Tell("client refused: " + link->peer_address() + " comes while another one is connected");
+  }
+}
+
+// The robot's clock goes on without a client, too: a stop that is pressed is let go.
+std::optional<CommandLink> Server::AwaitClient() {
+  const auto begin = Clock::now();
+  for (std::int64_t ticks = 0; Clock::now() - begin < kAskAgain;) {
+    if (robot::fci::WaitToRead({listener_.fd()}, kMillisecond)) return listener_.Accept();
+    for (; ticks < (Clock::now() - begin) / kMillisecond; ++ticks) panda_.Tick(std::nullopt);
+  }
+  return std::nullopt;
+}
+
 void Server::Run(const std::function<bool()>& stop) {
   while (!stop()) {
-    robot::fci::WaitToRead({listener_.fd()}, kAskAgain);
-    auto link = listener_.Accept();
+    auto link = AwaitClient();
     if (!link) continue;
     Serve(std::move(*link), stop);
     if (options_.once) return;

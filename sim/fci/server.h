@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "sidestep/robot/fci/socket.h"
@@ -19,12 +20,13 @@ enum class ServerClock : std::uint8_t {
 struct ServerOptions {
   std::string address = "127.0.0.1";  ///< its port is the protocol's, 1337
   ServerClock clock = ServerClock::kLockStep;
-  double grace_s = 1;  ///< lock-step: an answer that takes longer is lost, as are those after it
-  bool once = false;   ///< ends with the first client
+  double grace_s = 10;  ///< lock-step: an answer that takes longer is lost, as are those after it
+  bool once = false;    ///< ends with the first client
   std::uint16_t version = robot::fci::kVersion;
 };
 
-/// Puts a simulated Panda on the network: one client after another, as the robot has it.
+/// Puts a simulated Panda on the network: one client after another, as the robot has it; who comes
+/// while one is there is turned away.
 class Server {
  public:
   /// Takes the port. @param panda must outlive this.
@@ -39,6 +41,8 @@ class Server {
 
  private:
   void Serve(robot::fci::CommandLink link, const std::function<bool()>& stop);
+  void TurnAway();
+  std::optional<robot::fci::CommandLink> AwaitClient();
   void Tell(const std::string& what) const;
 
   SimulatedPanda& panda_;

@@ -48,6 +48,11 @@ SimulatedPanda::SimulatedPanda(PandaPlant* plant, FaultScript faults)
   reference_.q = plant_.q();
 }
 
+void SimulatedPanda::BeginAnew() {
+  plant_.BeginAnew();
+  faults_.BeginAnew();
+}
+
 void SimulatedPanda::Tell(const std::string& what) const {
   if (tell_) tell_(what);
 }

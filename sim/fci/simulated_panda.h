@@ -22,12 +22,17 @@ namespace sidestep::sim::fci {
 /// The robot behind the wire: takes requests and commands, gives states; knows no sockets and no
 /// clock but its own, which Tick moves on by a millisecond.
 ///
-/// The world stands still until the first command of the first motion, and whenever the arm rests
-/// after one: what happens in it depends on the commands alone, not on how long a client thinks.
+/// The world begins with each client, stands still until the first command of its first motion, and
+/// whenever the arm rests after one: what happens in it depends on the commands alone, not on how
+/// long a client thinks.
 class SimulatedPanda {
  public:
   /// @param plant must outlive this.
   SimulatedPanda(PandaPlant* plant, FaultScript faults);
+
+  /// The world begins at time 0 again, with the arm where it rests and as it is: what a client
+  /// meets does not depend on those before it. What was to go wrong goes wrong but once.
+  void BeginAnew();
 
   /// What happens, one line each, for a person.
   void TellWith(std::function<void(const std::string&)> tell) { tell_ = std::move(tell); }

@@ -207,14 +207,49 @@ TEST_F(Episode, GoesOnWithWhatItKnowsWhenAnOverdueSensorHasNothingMoreToGive) {
   EXPECT_NEAR(world_.empty_reads, 1000 * silent_s, 5);
 }
 
+// Arrives half a frame after the first one's, and is older.
+class SlowSensor final : public robot::Sensor {
+ public:
+  EpisodeTime NextDue() const override { return EpisodeTime((next_ + 0.5) / 30.0); }
+  std::optional<Scan> Read(EpisodeTime now) override {
+    if (now < NextDue()) return std::nullopt;
+    Scan scan;
+    scan.t = EpisodeTime((next_++ - 0.5) / 30.0);
+    return scan;
+  }
+  int num_read() const { return next_; }
+
+ private:
+  int next_ = 0;
+};
+
+TEST_F(Episode, LeavesOutAndCountsTheScansOfASlowerSensor) {
+  const EpisodeResult alone = Run();
+  SlowSensor slow;
+  const WorldFactory both = [&](const scenarios::Scenario& scenario,
+                                const robot::RobotModel& robot) {
+    EpisodeWorld world = world_.Factory()(scenario, robot);
+    world.sensors.push_back({"slow", &slow});
+    return world;
+  };
+  const EpisodeResult result = RunEpisode(scenario_, arm_, both);
+  EXPECT_EQ(result.outcome, alone.outcome) << result.reason;
+  EXPECT_EQ(result.recording.observations.size(), alone.recording.observations.size());
+  EXPECT_GT(slow.num_read(), 10);
+  EXPECT_EQ(result.scans_left_out.at("slow"), slow.num_read());
+}
+
 TEST_F(Episode, ThatIsStoppedFromOutsideBrakesAndKeepsWhatHappened) {
   EpisodeOptions options;
   int cycles = 0;
   options.observe_field = [&](EpisodeTime, const auto&, const robot::WorldTruth*) { ++cycles; };
-  options.is_stopped = [&] { return cycles == 8; };
+  options.why_stop = [&] { return cycles == 8 ? "a test" : ""; };
   const EpisodeResult result = RunEpisode(scenario_, arm_, world_.Factory(), options);
   EXPECT_EQ(result.outcome, Outcome::kAborted);
-  EXPECT_EQ(result.reason, "it was stopped from outside");
+  EXPECT_EQ(result.reason, "it was stopped from outside: a test");
+  ASSERT_EQ(result.safety_events.size(), 1u);
+  EXPECT_EQ(result.safety_events[0].check, "operator_stop");
+  EXPECT_EQ(result.safety_events[0].reaction, "brake");
   EXPECT_TRUE(world_.holds);
   EXPECT_GE(result.recording.control.back().t.seconds(), 0.7);
   EXPECT_EQ(result.recording.cycles.size(), 8u);
@@ -266,8 +301,9 @@ TEST_F(Episode, OnAWallClockTakesAsLongAsItLastsAndDropsPlansThatComeLate) {
   scenario_.latency_s = 1e-6;  // no plan can be there by then
   EpisodeOptions options;
   options.clock = EpisodeClock::kWall;
-  options.is_stopped = [begin = std::chrono::steady_clock::now()] {
-    return std::chrono::steady_clock::now() - begin > std::chrono::milliseconds(600);
+  options.why_stop = [begin = std::chrono::steady_clock::now()] {
+    const bool is_over = std::chrono::steady_clock::now() - begin > std::chrono::milliseconds(600);
+    return is_over ? "a test" : "";
   };
   const EpisodeResult result = RunEpisode(scenario_, arm_, world_.Factory(), options);
   EXPECT_GE(result.wall_s, result.recording.control.back().t.seconds() - 0.02);

@@ -143,7 +143,25 @@ TEST_F(ResultFile, OfAnotherKindIsRefused) {
     EXPECT_EQ(Complaint(), path_ + ": is not a result.json of sidestep") << text;
   }
   WriteFile(path_, "{\"format\": \"sidestep-result-1\"}");
-  EXPECT_THAT(Complaint(), ::testing::StartsWith(path_ + ": is not a whole result: "));
+  EXPECT_EQ(Complaint(), path_ + ": is not a whole result: 'scenario' is missing");
+  WriteFile(path_, "{\"format\": \"sidestep-result-1\", \"scenario\": 3}");
+  EXPECT_EQ(Complaint(), path_ + ": is not a whole result: a value is of the wrong kind");
+}
+
+TEST_F(ResultFile, TellsHowLongARobotWaitedForItsCommands) {
+  EpisodeResult result = SomeResult();
+  const auto answers = [&] {
+    return nlohmann::json::parse(ResultJson(result, SomeScenario(), kIdentity, {}))
+        .at("wall_clock")
+        .at("answers");
+  };
+  EXPECT_TRUE(answers().is_null());
+  result.answers_s.assign(1000, 20e-6);
+  result.answers_s[500] = 400e-6;
+  EXPECT_EQ(answers().at("count"), 1000);
+  EXPECT_NEAR(answers().at("p50_us").get<double>(), 20, 1e-9);
+  EXPECT_NEAR(answers().at("p99_9_us").get<double>(), 20, 1);
+  EXPECT_NEAR(answers().at("max_us").get<double>(), 400, 1e-9);
 }
 
 TEST_F(ResultFile, LeavesNothingBehindWhereItCannotBeWritten) {

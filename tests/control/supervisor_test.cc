@@ -12,6 +12,7 @@
 #include "sidestep/control/follower.h"
 #include "sidestep/core/random.h"
 #include "tests/support/allocations.h"
+#include "tests/support/locks.h"
 
 namespace sidestep::control {
 namespace {
@@ -66,9 +67,10 @@ class Scene {
       if (ticks_ % 10 == 0) follower_.Watch(see(t));
       Measured measured{t, state_.q, state_.v, state_};
       disturb(measured);
-      const int allocations = CountAllocations().count;
+      const int allocations = CountAllocations().count, locks = CountLocksOfThread();
       state_ = follower_.Tick(measured, HorizonOffset(kTick_s)).motion;
       ASSERT_EQ(CountAllocations().count, allocations);
+      ASSERT_EQ(CountLocksOfThread(), locks);
       if (!state_.v.isZero(0)) last_moved_s_ = t.seconds();
       follower_.DrainFindings([this](const Finding& event) { findings_.push_back(event); });
       follower_.DrainLog([](const TickRecord&) {});

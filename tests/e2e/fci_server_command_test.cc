@@ -57,6 +57,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"ScenarioOfAnotherRobot",
                 {"--scenario", "wam_single_pillar"},
                 "--scenario: its robot must be the panda, is 'wam'"},
+        Mistake{
+            "SpeedOfNoScenario", {"--speed", "0.5"}, "--speed: is of the things of a --scenario"},
         Mistake{"SettingOfNoScenario", {"--set", "planner.qc=2"}, "--set: is of a --scenario"}),
     [](const auto& test) { return test.param.name; });
 

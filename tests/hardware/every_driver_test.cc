@@ -13,6 +13,7 @@
 
 #include "sidestep/hardware/libfranka_driver.h"
 #include "sidestep/hardware/raw_fci_driver.h"
+#include "sidestep/hardware/readiness.h"
 #include "tests/hardware/served_panda.h"
 
 namespace sidestep::hardware {
@@ -147,6 +148,17 @@ TEST_P(EveryDriver, TellsAUserStop) {
   EXPECT_EQ(driver->ReadOnce().mode, RobotMode::kUserStopped);
   EXPECT_EQ(FailureOf(*driver, Hold(10))->kind(), Kind::kRefused);
   EXPECT_THROW(driver->Recover(), FciError);
+}
+
+TEST_P(EveryDriver, TellsThatTheRobotIsReadyOrGuidedByHand) {
+  const ServedPanda panda("faults: [{kind: guiding, at_s: 0.1, for_s: 60}]");
+  const auto driver = Connect(panda);
+  EXPECT_FALSE(WhyNotReady(driver->ReadOnce(), panda.robot()));
+  const auto error = FailureOf(*driver, Hold(200000));
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->kind(), Kind::kAborted) << error->what();
+  EXPECT_EQ(driver->ReadOnce().mode, RobotMode::kGuiding);
+  EXPECT_TRUE(WhyNotReady(driver->ReadOnce(), panda.robot()));
 }
 
 TEST_P(EveryDriver, TellsThatTheRobotIsGone) {

@@ -321,6 +321,63 @@ TEST(FciServer, IsStoppedByTheUserAndFreeAgainAfterwards) {
   driver.Control(CommandKind::kPositions, Swing());
 }
 
+// The robot's clock goes on when nobody is connected.
+TEST(FciServer, LetsGoOfAStopWithoutAClient) {
+  const ServedPanda panda("faults: [{kind: user_stop, at_s: 0.1, for_s: 1.5}]");
+  {
+    RawFciDriver driver(panda.address());
+    EXPECT_EQ(FailureOf(driver, CommandKind::kPositions, Swing()).kind(), Kind::kUserStop);
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  RawFciDriver driver(panda.address());
+  EXPECT_EQ(driver.ReadOnce().mode, RobotMode::kIdle);
+}
+
+TEST(FciServer, TurnsAwayWhoComesWhileAnotherOneIsConnected) {
+  const ServedPanda panda;
+  auto first = std::make_unique<RawFciDriver>(panda.address());
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    try {
+      const RawFciDriver second(panda.address());
+      FAIL() << "was connected";
+    } catch (const FciError& error) {
+      EXPECT_EQ(error.kind(), Kind::kNetwork);
+      EXPECT_NE(std::string(error.what()).find("another program may be connected"),
+                std::string::npos)
+          << error.what();
+    }
+  }
+  first->Control(CommandKind::kPositions, Swing());
+  // One after the other, however soon.
+  for (int k = 0; k < 20; ++k) {
+    first.reset();
+    first = std::make_unique<RawFciDriver>(panda.address());
+    EXPECT_EQ(first->ReadOnce().mode, RobotMode::kIdle);
+  }
+}
+
+TEST(World, BeginsAnewWithTheArmWhereItIs) {
+  scenarios::Scenario scenario = sim::fci::PandaAlone();
+  scenario.moving_obstacles.emplace_back();
+  scenario.moving_obstacles.back().name = "ball";
+  scenario.moving_obstacles.back().shape = Sphere{0.1};
+  scenario.moving_obstacles.back().rpy_rad.setZero();
+  scenario.moving_obstacles.back().motion = scenarios::LinearMotion{{0, 2, 1}, {0, 1, 0}, 1, 100};
+  const std::string models = SIDESTEP_SOURCE_DIR "/models";
+  const robot::RobotModel robot = robot::RobotModel::Load(models, "panda", Pose());
+  const auto world =
+      sim::fci::MakePandaWorld(scenario, robot, models, robot.configurations().at("home"));
+  const auto ball_y = [&] { return world->data().mocap_pos[1]; };
+  for (int k = 0; k < 500; ++k) world->Step(Eigen::VectorXd::Constant(7, 1));
+  EXPECT_NEAR(ball_y(), 2.5, 1e-9);
+  const Eigen::VectorXd q = world->q();
+  world->BeginAnew();
+  EXPECT_EQ(world->time(), EpisodeTime(0));
+  EXPECT_EQ(ball_y(), 2);
+  EXPECT_EQ(world->q(), q);
+  EXPECT_TRUE(world->v().isZero(0));
+}
+
 TEST(FciServer, IsTakenByTheHand) {
   const ServedPanda panda("faults: [{kind: guiding, at_s: 0.5, for_s: 1}]");
   RawFciDriver driver(panda.address());

@@ -4,8 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -13,7 +17,10 @@
 #include "sidestep/hardware/raw_fci_driver.h"
 #include "sidestep/hardware/slow_move.h"
 #include "sidestep/robot/robot_error.h"
+#include "tests/hardware/perfect_panda.h"
 #include "tests/hardware/served_panda.h"
+#include "tests/support/allocations.h"
+#include "tests/support/locks.h"
 
 namespace sidestep::hardware {
 namespace {
@@ -145,12 +152,181 @@ TEST_P(PandaRobotInTrouble, SaysSoWithItsLastTicks) {
 INSTANTIATE_TEST_SUITE_P(
     OnTheWire, PandaRobotInTrouble,
     testing::Values(
+        Trouble{"ALongBurstOfLostPackets", "faults: [{kind: lose_commands, at_s: 0.5, count: 19}]",
+                ""},
+        Trouble{"PacketsLostHereAndThere",
+                "faults: [{kind: lose_some, at_s: 0.2, for_s: 1, rate: 0.05}]", ""},
+        Trouble{"AGapOfEightMilliseconds", "faults: [{kind: lose_states, at_s: 0.5, count: 8}]",
+                ""},
+        Trouble{"TooLongABurst", "faults: [{kind: lose_commands, at_s: 0.5, count: 20}]",
+                "communication_constraints_violation; --clock lockstep is for a server"},
+        Trouble{"AHandThatGuidesTheArm", "faults: [{kind: guiding, at_s: 0.5, for_s: 5}]",
+                "the motion was aborted; its mode is now 'guiding'"},
         Trouble{"AFewLostPackets", "faults: [{kind: lose_commands, at_s: 0.5, count: 8}]", ""},
         Trouble{"AUserStop", "faults: [{kind: user_stop, at_s: 0.5, for_s: 0.5}]", "stop"},
         Trouble{"AReflex", "faults: [{kind: error, at_s: 0.5, name: cartesian_reflex}]",
                 "cartesian_reflex"},
         Trouble{"ACutConnection", "faults: [{kind: cut_link, at_s: 0.5}]", "closed"}),
     [](const auto& test) { return std::string(test.param.name); });
+
+// Each of the robot's own reasons for a reflex, told by the wire.
+TEST(PandaRobot, TellsEachOfTheRobotsErrorsAndGoesOnOnlyAfterARecovery) {
+  using namespace robot::fci;
+  for (int error = 0; error < kNumErrors; ++error) {
+    SCOPED_TRACE(ErrorName(error));
+    const ServedPanda served(
+        "faults: [{kind: error, at_s: 0.1, name: " + std::string(ErrorName(error)) + "}]");
+    {
+      const auto panda = Connect(served);
+      panda->Submit(Nod(panda->Read().q), EpisodeTime(0));
+      try {
+        panda->AdvanceTo(EpisodeTime(1));
+        ADD_FAILURE() << "nothing happened";
+      } catch (const robot::RobotError& failure) {
+        EXPECT_EQ(
+            std::string(failure.what())
+                .rfind("the motion was aborted by a reflex: " + std::string(ErrorName(error)), 0),
+            0u)
+            << failure.what();
+      }
+      EXPECT_EQ(panda->Status().mode, robot::RobotMode::kFault);
+      EXPECT_THROW(panda->AdvanceTo(EpisodeTime(1.1)), robot::RobotError) << "it goes on by itself";
+    }
+    EXPECT_THROW(Connect(served), FciError) << "another one goes on without a recovery";
+    RawFciDriver driver(served.address());
+    EXPECT_EQ(driver.ReadOnce().mode, robot::fci::RobotMode::kReflex);
+    EXPECT_EQ(Text(driver.ReadOnce().last_motion_errors), ErrorName(error));
+    driver.Recover();
+    EXPECT_EQ(driver.ReadOnce().mode, robot::fci::RobotMode::kIdle);
+  }
+}
+
+// After a recovery a robot knows nothing of the plan that it followed before.
+TEST(PandaRobot, BeginsAnewAfterARecovery) {
+  const ServedPanda served("faults: [{kind: error, at_s: 0.3, name: joint_reflex}]");
+  {
+    const auto panda = Connect(served);
+    panda->Submit(Nod(panda->Read().q), EpisodeTime(0));
+    EXPECT_THROW(panda->AdvanceTo(EpisodeTime(1)), robot::RobotError);
+  }
+  RawFciDriver(served.address()).Recover();
+  const auto panda = Connect(served);
+  const Eigen::VectorXd q = panda->Read().q;
+  panda->AdvanceTo(EpisodeTime(0.5));
+  EXPECT_LT((panda->Read().q - q).cwiseAbs().maxCoeff(), 1e-3);
+  const std::vector<ControlSample> log = panda->TakeControlLog();
+  ASSERT_FALSE(log.empty());
+  EXPECT_LT((log.front().q_command - q).cwiseAbs().maxCoeff(), 1e-3) << "it begins elsewhere";
+  EXPECT_EQ(panda->Status().mode, robot::RobotMode::kReady);
+}
+
+TEST(PandaRobot, IsStoppedAtOnceWhenItIsAskedTo) {
+  const ServedPanda served;
+  bool is_asked = false;
+  PandaOptions options = LockStep();
+  options.stops_at_once = [&] { return is_asked; };
+  const auto panda = Connect(served, options);
+  panda->Submit(Nod(panda->Read().q), EpisodeTime(0));
+  panda->AdvanceTo(EpisodeTime(0.5));
+  is_asked = true;
+  EXPECT_THROW(panda->AdvanceTo(EpisodeTime(100)), robot::RobotError);
+  EXPECT_LT(panda->Read().t, EpisodeTime(99));
+  const std::vector<SafetyEvent> events = panda->TakeSafetyEvents();
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].check, "operator_stop");
+  EXPECT_EQ(events[0].reaction, "abort");
+}
+
+// The thread that answers, from the state to the command.
+TEST(PandaRobot, AllocatesNothingAndLocksNothingToAnswer) {
+  const robot::RobotModel model =
+      robot::RobotModel::Load(SIDESTEP_SOURCE_DIR "/models", "panda", Pose());
+  auto driver = std::make_unique<PerfectPanda>(RestingPanda());
+  int allocations = 0, locks = 0, answers = 0, allocated = 0, locked = 0;
+  driver->before = [&] {
+    allocated = CountAllocationsOfThread();
+    locked = CountLocksOfThread();
+  };
+  driver->after = [&] {
+    allocations += CountAllocationsOfThread() - allocated;
+    locks += CountLocksOfThread() - locked;
+    ++answers;
+  };
+  {
+    PandaRobot panda(std::move(driver), model, LockStep(control::SafetyProfile::kObserve));
+    panda.Submit(Nod(panda.Read().q), EpisodeTime(0.1));
+    ObstacleReport report;
+    report.obstacles.resize(5);
+    panda.Watch(report);
+    panda.AdvanceTo(EpisodeTime(1.5));
+  }  // the thread has ended
+  EXPECT_GE(answers, 1500);
+  EXPECT_EQ(allocations, 0);
+  EXPECT_EQ(locks, 0);
+  // The counters count.
+  allocated = CountAllocationsOfThread();
+  locked = CountLocksOfThread();
+  std::mutex mutex;
+  const std::lock_guard guard(mutex);
+  const auto number = std::make_unique<int>(3);
+  EXPECT_GT(CountAllocationsOfThread(), allocated);
+  EXPECT_EQ(CountLocksOfThread() - locked, AreLocksCounted() ? 1 : 0);
+}
+
+// A clock that says that each answer takes 20 us, but for one in the hundred that takes 2 ms.
+std::chrono::steady_clock::time_point SlowClock() {
+  static std::atomic<int> calls = 0;
+  static std::atomic<long> now_us = 0;
+  now_us += ++calls % 200 == 0 ? 2000 : 20;
+  return std::chrono::steady_clock::time_point(std::chrono::microseconds(now_us.load()));
+}
+
+TEST(PandaRobot, TellsHowLongItsAnswersTookAndTheFirstThatWasSlow) {
+  const robot::RobotModel model =
+      robot::RobotModel::Load(SIDESTEP_SOURCE_DIR "/models", "panda", Pose());
+  PandaOptions options = LockStep();
+  options.lockstep = false;
+  options.now = &SlowClock;
+  PandaRobot panda(std::make_unique<PerfectPanda>(RestingPanda(), /*in_real_time=*/true), model,
+                   options);
+  std::vector<double> answers_s;
+  while (answers_s.size() < 250) {
+    panda.AdvanceTo(EpisodeTime(panda.Read().t.seconds() + 0.01));
+    for (const double seconds : panda.TakeAnswerTimes()) answers_s.push_back(seconds);
+  }
+  const auto slow = [](double seconds) { return seconds > 300e-6; };
+  EXPECT_GE(std::count_if(answers_s.begin(), answers_s.end(), slow), 2);
+  EXPECT_NEAR(*std::min_element(answers_s.begin(), answers_s.end()), 20e-6, 1e-9);
+  EXPECT_NEAR(*std::max_element(answers_s.begin(), answers_s.end()), 2e-3, 1e-9);
+  const std::vector<SafetyEvent> events = panda.TakeSafetyEvents();
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].check, "slow_answer");
+  EXPECT_EQ(events[0].reaction, "none");
+  EXPECT_NEAR(events[0].value, 2e-3, 1e-9);
+  EXPECT_EQ(events[0].limit, 300e-6);
+}
+
+// A real arm has settled when it has been told the same 250 times.
+TEST(PandaRobot, EndsAMotionAtRestAndSettled) {
+  const robot::RobotModel model =
+      robot::RobotModel::Load(SIDESTEP_SOURCE_DIR "/models", "panda", Pose());
+  auto driver = std::make_unique<PerfectPanda>(RestingPanda());
+  int alike = 0;
+  bool has_finished = false;
+  driver->look = [&, last = robot::fci::Joints{}](const Command& command) mutable {
+    alike = command.values == last ? alike + 1 : 0;
+    last = command.values;
+    has_finished = command.finished;
+  };
+  {
+    PandaRobot panda(std::move(driver), model, LockStep());
+    panda.Submit(Nod(panda.Read().q), EpisodeTime(0));
+    panda.AdvanceTo(EpisodeTime(0.5));
+    ASSERT_EQ(alike, 0) << "it has to be in motion";
+  }
+  EXPECT_TRUE(has_finished);
+  EXPECT_GE(alike, 250);
+}
 
 TEST(SlowMove, IsAtRestAtBothEndsAndNoFasterThanATenth) {
   const robot::RobotModel panda =

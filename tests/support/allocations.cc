@@ -7,9 +7,11 @@
 namespace {
 std::atomic<int> num_allocations = 0;
 std::atomic<std::size_t> num_bytes = 0;
+thread_local int num_of_thread = 0;
 
 void* Allocate(std::size_t size, std::size_t alignment) {
   ++num_allocations;
+  ++num_of_thread;
   num_bytes += size;
   void* memory = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
   if (memory == nullptr) throw std::bad_alloc();
@@ -29,5 +31,6 @@ void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std
 namespace sidestep {
 
 Allocations CountAllocations() { return {num_allocations, num_bytes}; }
+int CountAllocationsOfThread() { return num_of_thread; }
 
 }  // namespace sidestep

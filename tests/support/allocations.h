@@ -10,5 +10,7 @@ struct Allocations {
   std::size_t bytes = 0;
 };
 Allocations CountAllocations();
+/// How often this thread has.
+int CountAllocationsOfThread();
 
 }  // namespace sidestep

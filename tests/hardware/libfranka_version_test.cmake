@@ -1,0 +1,26 @@
+# Run by cmake -P, with FOLDER to write to: which versions of libfranka are taken for a Panda.
+cmake_minimum_required(VERSION 3.25)
+include(${CMAKE_CURRENT_LIST_DIR}/../../cmake/Libfranka.cmake)
+foreach(case "0.8.0 no" "0.9.0 yes" "0.9.2 yes" "0.10.0 no" "0.15.0 no" "1.0.0 no")
+  string(REPLACE " " ";" case ${case})
+  list(GET case 0 version)
+  list(GET case 1 expected)
+  set(Franka_DIR ${FOLDER}/${version})
+  file(WRITE ${Franka_DIR}/FrankaConfig.cmake "")
+  # As its own does, it suits everybody who asks for the same major version.
+  file(WRITE ${Franka_DIR}/FrankaConfigVersion.cmake
+       "set(PACKAGE_VERSION ${version})\nset(PACKAGE_VERSION_COMPATIBLE TRUE)\n")
+  sidestep_find_libfranka(target why)
+  if(target STREQUAL "Franka::Franka")
+    set(found yes)
+  else()
+    set(found no)
+    if(NOT why STREQUAL
+       "libfranka ${version} is not for the Panda, which needs 0.9.1 or 0.9.2")
+      message(SEND_ERROR "${version}: ${why}")
+    endif()
+  endif()
+  if(NOT found STREQUAL expected)
+    message(SEND_ERROR "libfranka ${version} is taken for a Panda: ${found}, expected ${expected}")
+  endif()
+endforeach()
