@@ -170,6 +170,7 @@ class Loop {
     };
     as_far_as_it_goes([this] { KeepTicks(); });
     as_far_as_it_goes([this] { KeepTruth(); });
+    as_far_as_it_goes([this] { KeepFindings(); });
     as_far_as_it_goes([this] { KeepLastContact(); });
   }
 
@@ -196,9 +197,11 @@ class Loop {
     }
     KeepTicks();
     KeepTruth();
-    for (SafetyEvent& event : world_.robot->TakeSafetyEvents()) {
-      result_.safety_events.push_back(std::move(event));
-    }
+    KeepFindings();
+  }
+
+  void KeepFindings() {
+    for (SafetyEvent& event : world_.robot->TakeSafetyEvents()) recorder_.Keep(std::move(event));
   }
 
   void KeepTicks() { KeepTicks(world_.robot->TakeControlLog()); }

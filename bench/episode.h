@@ -47,7 +47,6 @@ struct EpisodeResult {
   int late_plans = 0;  ///< that came after the moment they were made for, and were dropped
   /// Scans by each sensor's name that were captured no later than the one before, and left out.
   std::map<std::string, int> scans_left_out;
-  std::vector<SafetyEvent> safety_events;  ///< of the robot's supervisor, in order
 };
 
 /// What an episode's time goes by.

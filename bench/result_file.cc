@@ -9,6 +9,7 @@
 
 #include "sidestep/bench/json_text.h"
 #include "sidestep/bench/metrics/registry.h"
+#include "sidestep/bench/metrics/robot_limit_metrics.h"
 #include "sidestep/bench/statistics.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/text_file.h"
@@ -79,6 +80,10 @@ std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& s
   json["reason"] = result.reason.empty() ? Json(nullptr) : Json(result.reason);
   const std::string touched = TouchedBy(result.recording);
   json["touched"] = touched.empty() ? Json(nullptr) : Json(touched);
+  json["would_trip"] = Json::array();
+  for (const TripMetric& metric : TrippedBy(result.recording.metrics)) {
+    json["would_trip"].push_back(metric.name);
+  }
   for (const Metric& metric : Metrics()) {
     json[metric.name] = ValueOf(metric, result.recording.metrics.at(metric.name));
   }
@@ -88,7 +93,7 @@ std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& s
   json["versions"] = versions;
   json["scans_left_out"] = result.scans_left_out;
   json["safety_events"] = Json::array();
-  for (const SafetyEvent& event : result.safety_events) {
+  for (const SafetyEvent& event : result.recording.safety) {
     json["safety_events"].push_back({{"t_s", event.t.seconds()},
                                      {"check", event.check},
                                      {"reaction", event.reaction},

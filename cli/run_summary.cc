@@ -1,7 +1,10 @@
 #include "sidestep/cli/run_summary.h"
 
+#include <map>
+#include <string>
 #include <vector>
 
+#include "sidestep/bench/metrics/robot_limit_metrics.h"
 #include "sidestep/bench/outcome.h"
 #include "sidestep/bench/result_file.h"
 #include "sidestep/bench/statistics.h"
@@ -39,6 +42,19 @@ void PrintPlanningTime(const bench::EpisodeResult& result, const scenarios::Scen
   if (result.late_plans > 0) Print("late plans       {}, dropped\n", result.late_plans);
 }
 
+void PrintTrips(const std::map<std::string, double>& metrics) {
+  std::string shares, tripped;
+  for (const bench::TripMetric& metric : bench::kTripMetrics) {
+    shares += (shares.empty() ? "" : ", ") + std::string(metric.words) + " " +
+              FiniteText("{:.2f}", metrics.at(metric.name), "not known");
+  }
+  for (const bench::TripMetric& metric : bench::TrippedBy(metrics)) {
+    tripped += (tripped.empty() ? "" : ", ") + std::string(metric.words);
+  }
+  Print("would it trip    {}; of the robot's limits: {}\n",
+        tripped.empty() ? "no" : "yes, " + tripped, shares);
+}
+
 }  // namespace
 
 void PrintOutcome(const bench::EpisodeResult& result, const scenarios::Scenario& scenario) {
@@ -58,14 +74,16 @@ void PrintOutcome(const bench::EpisodeResult& result, const scenarios::Scenario&
   }
   Print("GP cost          {}\n", number("gp_cost", 1, "{:.2f}"));
   Print("jerk RMS         {}\n", number("jerk_rms", 1, "{:.1f} rad/s^3"));
+  PrintTrips(metrics);
   if (metrics.at("samples_outside_grid") > 0) {
     Print("outside the map  {} places of planned motion: nothing is seen there\n",
           metrics.at("samples_outside_grid"));
   }
   PrintPlanningTime(result, scenario);
-  if (!result.safety_events.empty()) {
-    Print("supervisor       {} findings, the first at {:.3f} s: {}\n", result.safety_events.size(),
-          result.safety_events.front().t.seconds(), result.safety_events.front().check);
+  const std::vector<SafetyEvent>& findings = result.recording.safety;
+  if (!findings.empty()) {
+    Print("supervisor       {} findings, the first at {:.3f} s: {}\n", findings.size(),
+          findings.front().t.seconds(), findings.front().check);
   }
 }
 

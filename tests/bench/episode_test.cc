@@ -45,6 +45,8 @@ seed: 1
                                   "loop.yaml");
 }
 
+constexpr double kLink_m = 0.5;  // of the planar arm, both
+
 class Episode : public ::testing::Test {
  protected:
   EpisodeResult Run() { return RunEpisode(scenario_, arm_, world_.Factory()); }
@@ -101,7 +103,7 @@ TEST_F(Episode, InWhichTheArmCannotStayLongEnoughIsATimeout) {
 TEST_F(Episode, RecordsTheLimitsThatWereAskedFor) {
   scenario_.velocity_scale = 0.6;
   scenario_.acceleration_limits = false;
-  const record::AskedLimits limits = Run().recording.limits;
+  const record::MotionLimits limits = Run().recording.limits;
   EXPECT_EQ(limits.v_max, Eigen::Vector2d(0.6 * 2, 0.6 * 2));
   for (const Eigen::VectorXd* none : {&limits.a_max, &limits.jerk_max, &limits.torque_rate_max}) {
     EXPECT_EQ(none->size(), 2);
@@ -349,6 +351,25 @@ INSTANTIATE_TEST_SUITE_P(OnTheWay, EpisodeThatFails,
                          ::testing::Values(Failure{"robot", 0}, Failure{"robot", 0.7123},
                                            Failure{"sensor", 0}, Failure{"sensor", 0.7},
                                            Failure{"truth", 0.7}, Failure{"observer", 0.7}));
+
+TEST_F(Episode, KeepsWhatTheSupervisorFoundWhenTheRobotFailed) {
+  world_.breaks = "robot";
+  world_.breaks_at_s = 0.7;
+  const record::Recording recording = Run().recording;
+  ASSERT_EQ(recording.safety.size(), 1u);
+  EXPECT_EQ(recording.safety.front().check, "link");
+}
+
+TEST_F(Episode, RecordsWhereEachCommandPutsTheTool) {
+  const record::Recording recording = Run().recording;
+  ASSERT_EQ(recording.p_WTool.size(), recording.control.size());
+  for (std::size_t i = 0; i < recording.control.size(); ++i) {
+    const Eigen::VectorXd& q = recording.control[i].q_command;
+    const Eigen::Vector3d elbow(kLink_m * std::cos(q(0)), kLink_m * std::sin(q(0)), 0);
+    const Eigen::Vector3d hand(kLink_m * std::cos(q.sum()), kLink_m * std::sin(q.sum()), 0);
+    ASSERT_LT((elbow + hand - recording.p_WTool[i]).norm(), 1e-12);
+  }
+}
 
 TEST_F(Episode, ThatFailsAfterAContactKeepsTheContact) {
   scenario_.knowledge = "static";

@@ -24,7 +24,7 @@
 namespace sidestep {
 namespace {
 
-const record::SealedFormat kFormat = {"sidestep trace", 2};
+const record::SealedFormat kFormat = {"sidestep trace", record::kTraceVersion};
 
 constexpr const char* kGoodModel = R"(<mujoco model="small"><option timestep="0.001"/>
 <size nconmax="200" njmax="800"/><visual><quality shadowsize="2048"/></visual>
