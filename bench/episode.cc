@@ -44,6 +44,23 @@ constexpr const char* kLate = "late";  // the status of a plan that came after i
 
 constexpr const char* kStages[] = {"sense", "map", "segment", "track", "predict", "optimise"};
 
+StageTimes NoTimes() {
+  StageTimes times;
+  for (const char* const stage : kStages) times[stage];
+  times["cycle"];
+  return times;
+}
+
+void Measure(record::Recording& recording) {
+  for (const Metric& metric : Metrics()) recording.metrics[metric.name] = metric.compute(recording);
+}
+
+// The trace tells how its episode ended, as the result does.
+void TellInHeader(EpisodeResult& result) {
+  result.recording.header["outcome"] = ToString(result.outcome);
+  if (!result.reason.empty()) result.recording.header["reason"] = result.reason;
+}
+
 // Why the robot was never given a plan.
 std::string WhyNoPlan(const record::Recording& recording) {
   if (recording.observations.empty()) return "no scan has arrived";
@@ -87,8 +104,8 @@ class Loop {
     if (scenario.safety.profile != scenarios::SafetyProfile::kOff) {
       safety_.emplace(scenario, world);
     }
-    for (const char* const stage : kStages) result_.times[stage];
-    result_.times["cycle"];
+    result_.times = NoTimes();
+    KeepJournal();
   }
 
   EpisodeResult Run() {
@@ -198,6 +215,11 @@ class Loop {
     KeepTicks();
     KeepTruth();
     KeepFindings();
+    KeepJournal();
+  }
+
+  void KeepJournal() {
+    if (options_.journal != nullptr) options_.journal->Keep(recorder_.recording());
   }
 
   void KeepFindings() {
@@ -318,20 +340,17 @@ class Loop {
   }
 
   EpisodeResult Finish() {
-    record::Recording recording = recorder_.Take();
-    for (const Metric& metric : Metrics()) {
-      recording.metrics[metric.name] = metric.compute(recording);
-    }
+    result_.recording = recorder_.Take();
+    const record::Recording& recording = result_.recording;
+    Measure(result_.recording);
     result_.outcome = is_aborted_ ? Outcome::kAborted : Judge(recording, goal_.dwelt().has_value());
-    recording.header["outcome"] = ToString(result_.outcome);
     if (!is_aborted_ && recording.metrics.at("plans_accepted") == 0) {
       result_.reason = WhyNoPlan(recording);
     }
-    if (!result_.reason.empty()) recording.header["reason"] = result_.reason;
+    TellInHeader(result_);
     for (const SensorWatch& sensor : sensors_) {
       result_.scans_left_out[sensor.name()] += sensor.num_left_out();
     }
-    result_.recording = std::move(recording);
     return std::move(result_);
   }
 
@@ -419,6 +438,17 @@ EpisodeResult RunEpisode(const scenarios::Scenario& scenario, const robot::Robot
   const HoldAtTheEnd hold(*world.robot);
   EpisodeResult result = Loop(scenario, robot, world, options).Run();
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return result;
+}
+
+EpisodeResult CutOffEpisode(record::Recording recording) {
+  EpisodeResult result;
+  result.outcome = Outcome::kAborted;
+  result.reason = "its process ended before the episode did";
+  result.times = NoTimes();
+  result.recording = std::move(recording);
+  Measure(result.recording);
+  TellInHeader(result);
   return result;
 }
 

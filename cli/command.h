@@ -18,6 +18,7 @@ void AddRunCommand(CommandLine& line);
 void AddListCommand(CommandLine& line);
 void AddCompareCommand(CommandLine& line);
 void AddAuditCommand(CommandLine& line);
+void AddSalvageCommand(CommandLine& line);
 void AddRenderCommand(CommandLine& line);
 void AddReproduceCommand(CommandLine& line);
 void AddStudyCommand(CommandLine& line);

@@ -9,8 +9,9 @@
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/hardware_world.h"
-#include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/panda_connection.h"
+#include "sidestep/cli/provenance.h"
+#include "sidestep/cli/run_folder.h"
 #include "sidestep/cli/run_summary.h"
 #include "sidestep/cli/scenario_options.h"
 #include "sidestep/cli/stop_signals.h"
@@ -87,10 +88,6 @@ int RunOnHardware(HardwareOptions options) {
   const DataPaths paths = FindDataPaths();
   Problem problem = LoadForHardware(options, paths);
   if (options.dry_run) return DryRun(options, std::move(problem), paths);
-  const std::string out = MakeOutFolder(
-      options.out.empty() ? "out/" + problem.scenario.name + "/hardware" : options.out,
-      {"trace.h5", "result.json"});
-
   const bool lockstep = options.clock == "lockstep";
   if (!lockstep && problem.scenario.latency == scenarios::Latency::kNone) {
     throw InputError("replanning.latency", "planning takes time on hardware: charged or measured");
@@ -98,6 +95,8 @@ int RunOnHardware(HardwareOptions options) {
   if (lockstep && !IsLoopback(options.robot)) {
     throw InputError("--clock", "a real robot has a clock of its own: wall");
   }
+  RunFolder folder(options.out.empty() ? "out/" + problem.scenario.name + "/hardware" : options.out,
+                   Identify(problem.scenario, paths));
   const StopSignals signals;
   hardware::PandaRobot* panda = nullptr;
   const bench::WorldFactory worlds = HardwareWorlds(
@@ -109,8 +108,9 @@ int RunOnHardware(HardwareOptions options) {
     if (signals.count() > 1 && panda != nullptr) panda->StopNow();
     return signals.count() > 0;
   };
+  episode.journal = &folder.journal();
   bench::EpisodeResult result = bench::RunEpisode(problem.scenario, problem.robot, worlds, episode);
-  KeepAndTell(result, problem.scenario, paths, out, options.json);
+  folder.KeepAndTell(result, problem.scenario, options.json);
   return 0;
 }
 

@@ -9,11 +9,7 @@
 #include "sidestep/bench/result_file.h"
 #include "sidestep/bench/statistics.h"
 #include "sidestep/cli/console.h"
-#include "sidestep/cli/provenance.h"
-#include "sidestep/cli/versions.h"
-#include "sidestep/core/atomic_file.h"
 #include "sidestep/core/number_text.h"
-#include "sidestep/record/recording_file.h"
 
 namespace sidestep::cli {
 namespace {
@@ -22,7 +18,8 @@ namespace {
 void PrintPlanningTime(const bench::EpisodeResult& result, const scenarios::Scenario& scenario) {
   const std::vector<double>& cycle_s = result.times.at("cycle");
   if (cycle_s.empty()) {
-    Print("planning cycle   - (there was none)\n");
+    const bool took_time = !result.recording.cycles.empty();  // and nobody is left who knows it
+    Print("planning cycle   - {}\n", took_time ? "(not known)" : "(there was none)");
     return;
   }
   Print("planning cycle   {:.1f} ms CPU (median of {}), ", 1e3 * bench::Quantile(cycle_s, 0.5),
@@ -85,22 +82,6 @@ void PrintOutcome(const bench::EpisodeResult& result, const scenarios::Scenario&
     Print("supervisor       {} findings, the first at {:.3f} s: {}\n", findings.size(),
           findings.front().t.seconds(), findings.front().check);
   }
-}
-
-void KeepAndTell(bench::EpisodeResult& result, const scenarios::Scenario& scenario,
-                 const DataPaths& paths, const std::string& out, bool as_json) {
-  const bench::RunIdentity identity = Identify(scenario, paths);
-  AddProvenance(identity, result.recording);
-  record::WriteRecording(result.recording, out + "/trace.h5");
-  const std::string json = bench::ResultJson(result, scenario, identity, Versions());
-  WriteFile(out + "/result.json", json);
-  if (as_json) {
-    PrintText(json);
-  } else {
-    PrintOutcome(result, scenario);
-    Print("written          {}/result.json, {}/trace.h5\n", out, out);
-  }
-  bench::RequireWhole(result);  // what there is has been written
 }
 
 }  // namespace sidestep::cli

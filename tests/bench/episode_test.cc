@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "sidestep/bench/metrics/registry.h"
+#include "sidestep/record/journal.h"
 #include "sidestep/record/recording_file.h"
 #include "tests/bench/kinematic_world.h"
 #include "tests/support/planar_arm.h"
@@ -369,6 +370,28 @@ TEST_F(Episode, RecordsWhereEachCommandPutsTheTool) {
     const Eigen::Vector3d hand(kLink_m * std::cos(q.sum()), kLink_m * std::sin(q.sum()), 0);
     ASSERT_LT((elbow + hand - recording.p_WTool[i]).norm(), 1e-12);
   }
+}
+
+TEST_F(Episode, IsRecordedAlikeWithAJournalThatHoldsAllOfIt) {
+  const record::Recording without = Run().recording;
+  const TemporaryFolder folder;
+  const std::string path = folder.path() / "trace.journal";
+  EpisodeResult with;
+  {
+    record::Journal journal(path, {{"identity.run", "abc"}}, {});
+    EpisodeOptions options;
+    options.journal = &journal;
+    with = RunEpisode(scenario_, arm_, world_.Factory(), options);
+  }
+  EXPECT_EQ(record::ToHdf5(with.recording), record::ToHdf5(without));
+
+  const EpisodeResult cut_off = CutOffEpisode(record::ReadJournal(path).recording);
+  EXPECT_EQ(cut_off.outcome, Outcome::kAborted);
+  record::Recording salvaged = cut_off.recording;
+  EXPECT_EQ(salvaged.header.at("outcome"), "aborted");
+  EXPECT_EQ(salvaged.header.at("identity.run"), "abc");
+  salvaged.header = without.header;
+  EXPECT_EQ(record::ToHdf5(salvaged), record::ToHdf5(without));
 }
 
 TEST_F(Episode, ThatFailsAfterAContactKeepsTheContact) {
