@@ -46,6 +46,7 @@ record::Recording BeginRecording(const scenarios::Scenario& scenario,
   recording.header = {{"scenario", scenario.name},       {"robot", robot.name()},
                       {"planner", scenario.planner},     {"knowledge", scenario.knowledge},
                       {"predictor", scenario.predictor}, {"seed", std::to_string(scenario.seed)}};
+  recording.header.insert(world.facts.begin(), world.facts.end());
   for (const auto& [choice, chosen] : scenario.choices) {
     recording.header["choice." + choice] = chosen;
   }

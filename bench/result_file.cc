@@ -70,6 +70,9 @@ std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& s
   json["format"] = "sidestep-result-1";
   json["scenario"] = scenario.name;
   json["robot"] = scenario.robot;
+  const auto robot_at = result.recording.header.find("robot_at");
+  json["robot_at"] =
+      robot_at == result.recording.header.end() ? Json(nullptr) : Json(robot_at->second);
   json["planner"] = scenario.planner;
   json["knowledge"] = scenario.knowledge;
   json["predictor"] = scenario.predictor;
@@ -77,6 +80,8 @@ std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& s
   json["choices"] = scenario.choices;
   json["drawn"] = scenario.drawn;
   json["outcome"] = ToString(result.outcome);
+  const bool is_whole = result.outcome != Outcome::kAborted;
+  json["ended"] = is_whole ? Json(ToString(Ending(result.recording.metrics))) : Json(nullptr);
   json["reason"] = result.reason.empty() ? Json(nullptr) : Json(result.reason);
   const std::string touched = TouchedBy(result.recording);
   json["touched"] = touched.empty() ? Json(nullptr) : Json(touched);

@@ -59,7 +59,8 @@ void PrintOutcome(const bench::EpisodeResult& result, const scenarios::Scenario&
   const auto number = [&](const char* name, double scale, const char* format) {
     return FiniteText(format, scale * metrics.at(name));
   };
-  Print("outcome          {}\n", bench::Tell(result.outcome, bench::TouchedBy(result.recording)));
+  Print("outcome          {}\n",
+        bench::Tell(result.outcome, bench::TouchedBy(result.recording), bench::Ending(metrics)));
   if (!result.reason.empty()) Print("reason           {}\n", result.reason);
   Print("first contact    {}\n", number("first_contact_s", 1, "{:.3f} s"));
   Print("least clearance  {}\n", number("min_clearance_m", 1e3, "{:.1f} mm"));
