@@ -11,6 +11,8 @@
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/number_range.h"
+#include "sidestep/cli/provenance.h"
+#include "sidestep/cli/server_trace.h"
 #include "sidestep/cli/stop_signals.h"
 #include "sidestep/cli/wiring.h"
 #include "sidestep/core/input_error.h"
@@ -19,13 +21,14 @@
 #include "sidestep/sim/fci/panda_world.h"
 #include "sidestep/sim/fci/server.h"
 #include "sidestep/sim/simulated_truth.h"
+#include "sidestep/sim/world_xml.h"
 
 namespace sidestep::cli {
 namespace {
 
 struct ServerCommand {
   sim::fci::ServerOptions server;
-  std::string clock = "lockstep", scenario, faults;
+  std::string clock = "lockstep", scenario, faults, out;
   std::vector<std::string> settings;
   std::vector<double> q_start;
 };
@@ -69,9 +72,10 @@ class Judge {
  public:
   explicit Judge(const sim::World& world) : truth_(world) {}
 
-  void Observe() {
+  void Observe(ServerTrace* trace) {
     truth_.Observe();
     for (const TruthSample& sample : truth_.TakeSamples()) {
+      if (trace != nullptr) trace->Keep(sample);
       if (sample.in_contact && sample.contact_object != touched_) {
         Print("{:.3f} s: contact with {}\n", sample.contact_s, sample.contact_object);
       }
@@ -101,6 +105,17 @@ class Judge {
   TruthSample nearest_ = Nothing();
 };
 
+// Of this server, if it is asked for.
+std::optional<ServerTrace> MakeTrace(const ServerCommand& options, scenarios::Scenario scenario,
+                                     const robot::RobotModel& robot, const DataPaths& paths) {
+  if (options.out.empty()) return std::nullopt;
+  scenario.q_start = StartOf(options, scenario, robot);
+  if (scenario.q_goal.size() == 0) scenario.q_goal = scenario.q_start;
+  return std::optional<ServerTrace>(std::in_place, options.out, scenario, robot,
+                                    sim::BuildWorldXml(scenario, robot.mount_links(), paths.models),
+                                    Identify(scenario, paths));
+}
+
 int Serve(ServerCommand options) {
   const DataPaths paths = FindDataPaths();
   const sim::fci::FaultScript faults =
@@ -110,9 +125,13 @@ int Serve(ServerCommand options) {
   const auto world =
       sim::fci::MakePandaWorld(scenario, robot, paths.models, StartOf(options, scenario, robot));
   Judge judge(*world);
+  std::optional<ServerTrace> trace = MakeTrace(options, scenario, robot, paths);
   sim::fci::PandaPlant plant(robot, world.get());
-  plant.AfterStep([&] { judge.Observe(); });
   sim::fci::SimulatedPanda panda(&plant, faults);
+  plant.AfterStep([&] {
+    judge.Observe(trace ? &*trace : nullptr);
+    if (trace) trace->Keep(plant, panda);
+  });
   const auto tell = [&](const std::string& what) {
     Print("{:.3f} s: {}\n", plant.time_s(), what);
     FinishOutput();
@@ -134,6 +153,7 @@ int Serve(ServerCommand options) {
   const StopSignals signals;
   server->Run([&] { return signals.count() > 0; });
   judge.Conclude();
+  if (trace) Print("written          {}\n", trace->Write());
   return 0;
 }
 
@@ -163,6 +183,8 @@ void AddFciServerCommand(CommandLine& line) {
   server->add_option("--set", options->settings, "KEY=VALUE of the scenario, as for `sidestep run`")
       ->allow_extra_args(false);
   server->add_option("--faults", options->faults, "FILE.yaml of what goes wrong, and when");
+  server->add_option("--out", options->out,
+                     "Folder for a trace of what truly happens: motion, contacts, clearance");
   server->add_flag("--once", options->server.once, "End with the first client");
   server->footer(
       "Speaks protocol version 5, that of libfranka 0.9: joint positions, joint velocities and\n"
