@@ -44,6 +44,23 @@ constexpr const char* kLate = "late";  // the status of a plan that came after i
 
 constexpr const char* kStages[] = {"sense", "map", "segment", "track", "predict", "optimise"};
 
+StageTimes NoTimes() {
+  StageTimes times;
+  for (const char* const stage : kStages) times[stage];
+  times["cycle"];
+  return times;
+}
+
+void Measure(record::Recording& recording) {
+  for (const Metric& metric : Metrics()) recording.metrics[metric.name] = metric.compute(recording);
+}
+
+// The trace tells how its episode ended, as the result does.
+void TellInHeader(EpisodeResult& result) {
+  result.recording.header["outcome"] = ToString(result.outcome);
+  if (!result.reason.empty()) result.recording.header["reason"] = result.reason;
+}
+
 // Why the robot was never given a plan.
 std::string WhyNoPlan(const record::Recording& recording) {
   if (recording.observations.empty()) return "no scan has arrived";
@@ -92,8 +109,8 @@ class Loop {
     for (const robot::NamedSensor& sensor : world.sensors) {
       sensors_.emplace_back(sensor, /*has_own_clock=*/is_real_time_);
     }
-    for (const char* const stage : kStages) result_.times[stage];
-    result_.times["cycle"];
+    result_.times = NoTimes();
+    KeepJournal();
   }
 
   EpisodeResult Run() {
@@ -154,8 +171,8 @@ class Loop {
   // What was found beside the robot's own supervisor.
   void Note(control::SafetyCheck check, control::Reaction reaction, double value = 0,
             double limit = 0) {
-    result_.safety_events.push_back(
-        {EpisodeTime(now_s_), control::ToString(check), control::ToString(reaction), value, limit});
+    recorder_.Keep(SafetyEvent{EpisodeTime(now_s_), control::ToString(check),
+                               control::ToString(reaction), value, limit});
   }
 
   // It is to end, or nothing more can come of it: the robot comes to rest first.
@@ -190,6 +207,7 @@ class Loop {
     };
     as_far_as_it_goes([this] { KeepTicks(); });
     as_far_as_it_goes([this] { KeepTruth(); });
+    as_far_as_it_goes([this] { KeepFindings(); });
     as_far_as_it_goes([this] { KeepLastContact(); });
   }
 
@@ -216,11 +234,18 @@ class Loop {
     }
     KeepTicks();
     KeepTruth();
-    for (SafetyEvent& event : world_.robot->TakeSafetyEvents()) {
-      result_.safety_events.push_back(std::move(event));
-    }
     const std::vector<double> answers_s = world_.robot->TakeAnswerTimes();
     result_.answers_s.insert(result_.answers_s.end(), answers_s.begin(), answers_s.end());
+    KeepFindings();
+    KeepJournal();
+  }
+
+  void KeepJournal() {
+    if (options_.journal != nullptr) options_.journal->Keep(recorder_.recording());
+  }
+
+  void KeepFindings() {
+    for (SafetyEvent& event : world_.robot->TakeSafetyEvents()) recorder_.Keep(std::move(event));
   }
 
   void KeepTicks() { KeepTicks(world_.robot->TakeControlLog()); }
@@ -345,20 +370,17 @@ class Loop {
   }
 
   EpisodeResult Finish() {
-    record::Recording recording = recorder_.Take();
-    for (const Metric& metric : Metrics()) {
-      recording.metrics[metric.name] = metric.compute(recording);
-    }
+    result_.recording = recorder_.Take();
+    const record::Recording& recording = result_.recording;
+    Measure(result_.recording);
     result_.outcome = is_aborted_ ? Outcome::kAborted : Judge(recording, goal_.dwelt().has_value());
-    recording.header["outcome"] = ToString(result_.outcome);
     if (!is_aborted_ && recording.metrics.at("plans_accepted") == 0) {
       result_.reason = WhyNoPlan(recording);
     }
-    if (!result_.reason.empty()) recording.header["reason"] = result_.reason;
+    TellInHeader(result_);
     for (const SensorWatch& sensor : sensors_) {
       result_.scans_left_out[sensor.name()] += sensor.num_left_out();
     }
-    result_.recording = std::move(recording);
     return std::move(result_);
   }
 
@@ -447,6 +469,17 @@ EpisodeResult RunEpisode(const scenarios::Scenario& scenario, const robot::Robot
   const HoldAtTheEnd hold(*world.robot);
   EpisodeResult result = Loop(scenario, robot, world, options).Run();
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return result;
+}
+
+EpisodeResult CutOffEpisode(record::Recording recording) {
+  EpisodeResult result;
+  result.outcome = Outcome::kAborted;
+  result.reason = "its process ended before the episode did";
+  result.times = NoTimes();
+  result.recording = std::move(recording);
+  Measure(result.recording);
+  TellInHeader(result);
   return result;
 }
 

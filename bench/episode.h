@@ -9,6 +9,7 @@
 #include "sidestep/bench/episode_world.h"
 #include "sidestep/bench/outcome.h"
 #include "sidestep/core/samples.h"
+#include "sidestep/record/journal.h"
 #include "sidestep/record/recording.h"
 #include "sidestep/robot/robot_model.h"
 #include "sidestep/robot/world_truth.h"
@@ -47,7 +48,6 @@ struct EpisodeResult {
   int late_plans = 0;  ///< that came after the moment they were made for, and were dropped
   /// Scans by each sensor's name that were captured no later than the one before, and left out.
   std::map<std::string, int> scans_left_out;
-  std::vector<SafetyEvent> safety_events;  ///< of the robot's supervisor and the loop, in order
   /// How long the robot was kept waiting for each command, in real time; empty in simulation.
   std::vector<double> answers_s;
 };
@@ -68,6 +68,8 @@ struct EpisodeOptions {
   /// rests the episode ends as aborted, for this reason.
   std::function<std::string()> why_stop;
   EpisodeClock clock = EpisodeClock::kVirtual;
+  /// Gets what is recorded as it comes; null: there is none.
+  record::Journal* journal = nullptr;
 };
 
 /// Runs one closed loop: sense, predict, re-plan, splice, move, until 0.5 s after the goal is
@@ -84,6 +86,10 @@ struct EpisodeOptions {
 /// `make_world` throws: then there was no episode.
 EpisodeResult RunEpisode(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
                          const WorldFactory& make_world, const EpisodeOptions& options = {});
+
+/// What is known of an episode whose process ended before it did, from what was recorded until
+/// then: it is aborted, and nothing is known of its times.
+EpisodeResult CutOffEpisode(record::Recording recording);
 
 /// For whom a part of an episode is of no use. @throws std::runtime_error, with the reason, if it
 /// was aborted.

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
 #include <string>
+#include <utility>
 
 #include "sidestep/scenarios/yaml_text.h"
 
@@ -24,22 +24,20 @@ void AppendChanges(const std::vector<std::uint8_t>& before, const std::vector<st
   }
 }
 
-record::AskedLimits LimitsAskedFor(const scenarios::Scenario& scenario,
-                                   const robot::RobotModel& robot) {
-  constexpr double kNone = std::numeric_limits<double>::infinity();
-  const double v_scale = scenario.velocity_limits ? scenario.velocity_scale : kNone;
-  const double a_scale = scenario.acceleration_limits ? scenario.acceleration_scale : kNone;
+// The robot's times these; scales are infinite where nothing was asked for.
+record::MotionLimits LimitsOf(const robot::RobotModel& robot, double v_scale = 1,
+                              double a_scale = 1) {
   const Eigen::Index n = robot.num_joints();
-  record::AskedLimits asked = {Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd(n),
-                               Eigen::VectorXd(n)};
+  record::MotionLimits limits = {Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd(n),
+                                 Eigen::VectorXd(n)};
   for (Eigen::Index j = 0; j < n; ++j) {
     const robot::JointLimits& joint = robot.limits()[static_cast<std::size_t>(j)];
-    asked.v_max(j) = v_scale * joint.v_max;
-    asked.a_max(j) = a_scale * joint.a_max;
-    asked.jerk_max(j) = joint.jerk_max;
-    asked.torque_rate_max(j) = joint.torque_rate_max;
+    limits.v_max(j) = v_scale * joint.v_max;
+    limits.a_max(j) = a_scale * joint.a_max;
+    limits.jerk_max(j) = joint.jerk_max;
+    limits.torque_rate_max(j) = joint.torque_rate_max;
   }
-  return asked;
+  return limits;
 }
 
 record::Recording BeginRecording(const scenarios::Scenario& scenario,
@@ -48,6 +46,7 @@ record::Recording BeginRecording(const scenarios::Scenario& scenario,
   recording.header = {{"scenario", scenario.name},       {"robot", robot.name()},
                       {"planner", scenario.planner},     {"knowledge", scenario.knowledge},
                       {"predictor", scenario.predictor}, {"seed", std::to_string(scenario.seed)}};
+  recording.header.insert(world.facts.begin(), world.facts.end());
   for (const auto& [choice, chosen] : scenario.choices) {
     recording.header["choice." + choice] = chosen;
   }
@@ -61,11 +60,12 @@ record::Recording BeginRecording(const scenarios::Scenario& scenario,
   recording.q_start = scenario.q_start;
   recording.q_goal = scenario.q_goal;
   recording.dwell_s = scenario.dwell_s;
-  recording.v_max.resize(robot.num_joints());
-  for (int i = 0; i < robot.num_joints(); ++i) {
-    recording.v_max(i) = robot.limits()[static_cast<std::size_t>(i)].v_max;
-  }
-  recording.limits = LimitsAskedFor(scenario, robot);
+  recording.robot_limits = LimitsOf(robot);
+  recording.limits =
+      LimitsOf(robot, scenario.velocity_limits ? scenario.velocity_scale : record::kNoLimit,
+               scenario.acceleration_limits ? scenario.acceleration_scale : record::kNoLimit);
+  recording.tool_a_max = robot.tool_limits().a_max;
+  recording.tool_a_reflex = robot.tool_limits().a_reflex;
   return recording;
 }
 
@@ -73,7 +73,12 @@ record::Recording BeginRecording(const scenarios::Scenario& scenario,
 
 EpisodeRecorder::EpisodeRecorder(const scenarios::Scenario& scenario,
                                  const robot::RobotModel& robot, const EpisodeWorld& world)
-    : recording_(BeginRecording(scenario, robot, world)) {}
+    : robot_(robot), recording_(BeginRecording(scenario, robot, world)) {}
+
+void EpisodeRecorder::Keep(ControlSample tick) {
+  recording_.p_WTool.push_back(robot_.ComputeLinkPoses(tick.q_command).back().translation());
+  recording_.control.push_back(std::move(tick));
+}
 
 void EpisodeRecorder::Keep(const Scan& scan, EpisodeTime t_arrival,
                            const OccupancyGrid& occupancy) {

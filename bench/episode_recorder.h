@@ -17,13 +17,15 @@ namespace sidestep::bench {
 /// Writes down an episode as it goes on, so that what has happened is there however it ends.
 class EpisodeRecorder {
  public:
+  /// @param robot must outlive it.
   EpisodeRecorder(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
                   const EpisodeWorld& world);
 
-  void Keep(ControlSample tick) { recording_.control.push_back(std::move(tick)); }
+  void Keep(ControlSample tick);
   void Keep(TruthSample sample) { recording_.truth.push_back(std::move(sample)); }
   void Keep(CycleRecord cycle) { recording_.cycles.push_back(std::move(cycle)); }
   void Keep(TrackEvent event) { recording_.events.push_back(std::move(event)); }
+  void Keep(SafetyEvent event) { recording_.safety.push_back(std::move(event)); }
   /// @param occupancy what is filled after the scan, which arrived at `t_arrival`.
   void Keep(const Scan& scan, EpisodeTime t_arrival, const OccupancyGrid& occupancy);
 
@@ -32,6 +34,7 @@ class EpisodeRecorder {
   record::Recording Take() { return std::move(recording_); }
 
  private:
+  const robot::RobotModel& robot_;
   record::Recording recording_;
   std::vector<std::uint8_t> last_cells_;  // filled after the latest scan
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -22,6 +23,7 @@ struct EpisodeWorld {
   robot::WorldTruth* truth = nullptr;  ///< null on hardware: then nothing is judged by geometry
   std::string model_xml;               ///< to draw it
   std::vector<std::string> joints, obstacles;
+  std::map<std::string, std::string> facts;  ///< for the header of a recording of it
 };
 
 /// The world that `source` holds (a Simulation, or what stands for it on hardware), kept alive by

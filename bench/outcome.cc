@@ -3,6 +3,14 @@
 #include <cmath>
 
 namespace sidestep::bench {
+namespace {
+
+Outcome EndingOf(bool reached, bool planned) {
+  if (reached) return Outcome::kGoal;
+  return planned ? Outcome::kTimeout : Outcome::kPlannerFailed;
+}
+
+}  // namespace
 
 std::string ToString(Outcome outcome) {
   switch (outcome) {
@@ -29,17 +37,20 @@ std::optional<Outcome> OutcomeFromString(const std::string& word) {
   return std::nullopt;
 }
 
-std::string Tell(Outcome outcome, const std::string& touched) {
+Outcome Ending(const std::map<std::string, double>& metrics) {
+  return EndingOf(!std::isnan(metrics.at("time_to_goal_s")), metrics.at("plans_accepted") > 0);
+}
+
+std::string Tell(Outcome outcome, const std::string& touched, Outcome ending) {
   const char* const link = outcome == Outcome::kCollision ? " with " : ", touched ";
-  return ToString(outcome) + (touched.empty() ? "" : link + touched);
+  return ToString(outcome) + (outcome == Outcome::kUnjudged ? ", " + ToString(ending) : "") +
+         (touched.empty() ? "" : link + touched);
 }
 
 Outcome Judge(const record::Recording& recording, bool reached) {
   if (!std::isnan(recording.metrics.at("first_contact_s"))) return Outcome::kCollision;
   if (recording.truth.empty()) return Outcome::kUnjudged;
-  if (reached) return Outcome::kGoal;
-  const bool planned = recording.metrics.at("plans_accepted") > 0;
-  return planned ? Outcome::kTimeout : Outcome::kPlannerFailed;
+  return EndingOf(reached, recording.metrics.at("plans_accepted") > 0);
 }
 
 }  // namespace sidestep::bench

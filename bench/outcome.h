@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 
@@ -25,8 +26,12 @@ std::string ToString(Outcome outcome);
 /// None for any other word.
 std::optional<Outcome> OutcomeFromString(const std::string& word);
 
-/// The outcome's word and, if something was touched, what: "collision with hsr".
-std::string Tell(Outcome outcome, const std::string& touched);
+/// How an episode with these metrics ended, whatever it touched: goal, timeout or planner_failed.
+Outcome Ending(const std::map<std::string, double>& metrics);
+
+/// The outcome's word and, if something was touched, what: "collision with hsr". Of what nobody
+/// judged, also how it ended: "unjudged, timeout".
+std::string Tell(Outcome outcome, const std::string& touched, Outcome ending);
 
 /// The outcome of a whole recording whose metrics are filled. @param reached the goal.
 Outcome Judge(const record::Recording& recording, bool reached);

@@ -9,6 +9,7 @@
 
 #include "sidestep/bench/json_text.h"
 #include "sidestep/bench/metrics/registry.h"
+#include "sidestep/bench/metrics/robot_limit_metrics.h"
 #include "sidestep/bench/statistics.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/text_file.h"
@@ -89,6 +90,9 @@ std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& s
   json["format"] = "sidestep-result-1";
   json["scenario"] = scenario.name;
   json["robot"] = scenario.robot;
+  const auto robot_at = result.recording.header.find("robot_at");
+  json["robot_at"] =
+      robot_at == result.recording.header.end() ? Json(nullptr) : Json(robot_at->second);
   json["planner"] = scenario.planner;
   json["knowledge"] = scenario.knowledge;
   json["predictor"] = scenario.predictor;
@@ -96,9 +100,15 @@ std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& s
   json["choices"] = scenario.choices;
   json["drawn"] = scenario.drawn;
   json["outcome"] = ToString(result.outcome);
+  const bool is_whole = result.outcome != Outcome::kAborted;
+  json["ended"] = is_whole ? Json(ToString(Ending(result.recording.metrics))) : Json(nullptr);
   json["reason"] = result.reason.empty() ? Json(nullptr) : Json(result.reason);
   const std::string touched = TouchedBy(result.recording);
   json["touched"] = touched.empty() ? Json(nullptr) : Json(touched);
+  json["would_trip"] = Json::array();
+  for (const TripMetric& metric : TrippedBy(result.recording.metrics)) {
+    json["would_trip"].push_back(metric.name);
+  }
   for (const Metric& metric : Metrics()) {
     json[metric.name] = ValueOf(metric, result.recording.metrics.at(metric.name));
   }
@@ -108,7 +118,7 @@ std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& s
   json["versions"] = versions;
   json["scans_left_out"] = result.scans_left_out;
   json["safety_events"] = Json::array();
-  for (const SafetyEvent& event : result.safety_events) {
+  for (const SafetyEvent& event : result.recording.safety) {
     json["safety_events"].push_back({{"t_s", event.t.seconds()},
                                      {"check", event.check},
                                      {"reaction", event.reaction},

@@ -157,7 +157,7 @@ int Compare(const std::vector<std::string>& folders) {
     const bench::ResultSummary& result = results[n];
     Line& line = lines.emplace_back(Line{folders[n], result.knowledge});
     for (const std::vector<std::string>& values : shown) line.push_back(OneLine(values[n]));
-    line.push_back(bench::Tell(result.outcome, result.touched));
+    line.push_back(bench::Tell(result.outcome, result.touched, bench::Ending(result.metrics)));
     line.push_back(Number(result, "first_contact_s", 1, "{:.2f}"));
     line.push_back(Number(result, "min_clearance_m", 1e3, "{:.0f}"));
     line.push_back(Number(result, "time_to_goal_s", 1, "{:.2f}"));

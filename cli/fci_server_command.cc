@@ -11,6 +11,8 @@
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/number_range.h"
+#include "sidestep/cli/provenance.h"
+#include "sidestep/cli/server_trace.h"
 #include "sidestep/cli/stop_signals.h"
 #include "sidestep/cli/wiring.h"
 #include "sidestep/core/input_error.h"
@@ -19,13 +21,14 @@
 #include "sidestep/sim/fci/panda_world.h"
 #include "sidestep/sim/fci/server.h"
 #include "sidestep/sim/simulated_truth.h"
+#include "sidestep/sim/world_xml.h"
 
 namespace sidestep::cli {
 namespace {
 
 struct ServerCommand {
   sim::fci::ServerOptions server;
-  std::string clock = "lockstep", scenario, faults;
+  std::string clock = "lockstep", scenario, faults, out;
   std::vector<std::string> settings;
   std::optional<double> speed_m_s;
   std::vector<double> q_start;
@@ -72,13 +75,14 @@ class Judge {
  public:
   explicit Judge(const sim::World& world) : world_(world) { truth_.emplace(world); }
 
-  void Observe() {
+  void Observe(ServerTrace* trace) {
     if (world_.ticks() == 0) {
       truth_.emplace(world_);
     } else {
       truth_->Observe();
     }
     for (const TruthSample& sample : truth_->TakeSamples()) {
+      if (trace != nullptr) trace->Keep(sample);
       if (sample.in_contact && sample.contact_object != touched_) {
         Print("{:.3f} s: contact with {}\n", sample.contact_s, sample.contact_object);
       }
@@ -109,6 +113,18 @@ class Judge {
   TruthSample nearest_ = Nothing();
 };
 
+// Puts the trace of a client's world into its place, if traces are asked for.
+void BeginTrace(const ServerCommand& options, int number, scenarios::Scenario scenario,
+                const robot::RobotModel& robot, const DataPaths& paths,
+                std::optional<ServerTrace>& trace) {
+  if (options.out.empty()) return;
+  scenario.q_start = StartOf(options, scenario, robot);
+  if (scenario.q_goal.size() == 0) scenario.q_goal = scenario.q_start;
+  trace.emplace(options.out, number, scenario, robot,
+                sim::BuildWorldXml(scenario, robot.mount_links(), paths.models),
+                Identify(scenario, paths));
+}
+
 int Serve(ServerCommand options) {
   const DataPaths paths = FindDataPaths();
   const sim::fci::FaultScript faults =
@@ -118,9 +134,22 @@ int Serve(ServerCommand options) {
   const auto world =
       sim::fci::MakePandaWorld(scenario, robot, paths.models, StartOf(options, scenario, robot));
   Judge judge(*world);
+  std::optional<ServerTrace> trace;
+  const auto write_trace = [&] {
+    if (trace) Print("written          {}\n", trace->Write());
+    trace.reset();
+  };
+  int num_clients = 0;
   sim::fci::PandaPlant plant(robot, world.get());
-  plant.AfterStep([&] { judge.Observe(); });
   sim::fci::SimulatedPanda panda(&plant, faults);
+  plant.AfterStep([&] {
+    if (world->ticks() == 0 || num_clients == 0) {  // a world of its own for each client
+      write_trace();
+      BeginTrace(options, ++num_clients, scenario, robot, paths, trace);
+    }
+    judge.Observe(trace ? &*trace : nullptr);
+    if (trace) trace->Keep(plant, panda);
+  });
   const auto tell = [&](const std::string& what) {
     Print("{:.3f} s: {}\n", plant.time_s(), what);
     FinishOutput();
@@ -142,6 +171,7 @@ int Serve(ServerCommand options) {
   const StopSignals signals;
   server->Run([&] { return signals.count() > 0; });
   judge.Conclude();
+  write_trace();
   return 0;
 }
 
@@ -175,6 +205,8 @@ void AddFciServerCommand(CommandLine& line) {
                    "Speed of every moving obstacle of the scenario [m/s]")
       ->check(NumberFrom(0.0, 100.0));
   server->add_option("--faults", options->faults, "FILE.yaml of what goes wrong, and when");
+  server->add_option("--out", options->out,
+                     "Folder for a trace of what truly happens: motion, contacts, clearance");
   server->add_flag("--once", options->server.once, "End with the first client");
   server->footer(
       "Speaks protocol version 5, that of libfranka 0.9: joint positions, joint velocities and\n"

@@ -13,6 +13,8 @@
 #include "sidestep/cli/operator_log.h"
 #include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/panda_connection.h"
+#include "sidestep/cli/provenance.h"
+#include "sidestep/cli/run_folder.h"
 #include "sidestep/cli/run_summary.h"
 #include "sidestep/cli/scenario_options.h"
 #include "sidestep/cli/stop_signals.h"
@@ -107,9 +109,8 @@ int RunOnHardware(const HardwareOptions& options) {
   if (lockstep && !IsLoopback(options.robot)) {
     throw InputError("--clock", "a real robot has a clock of its own: wall");
   }
-  const OutFolder out(
-      options.out.empty() ? "out/" + problem.scenario.name + "/hardware" : options.out,
-      {"trace.h5", "result.json"});
+  RunFolder folder(options.out.empty() ? "out/" + problem.scenario.name + "/hardware" : options.out,
+                   Identify(problem.scenario, paths));
   const Operator person;
   const bench::WorldFactory worlds =
       HardwareWorlds(paths, options.robot,
@@ -119,8 +120,9 @@ int RunOnHardware(const HardwareOptions& options) {
   bench::EpisodeOptions episode;
   episode.clock = lockstep ? bench::EpisodeClock::kVirtual : bench::EpisodeClock::kRobot;
   episode.why_stop = [&] { return person.WhyStop(); };
+  episode.journal = &folder.journal();
   bench::EpisodeResult result = bench::RunEpisode(problem.scenario, problem.robot, worlds, episode);
-  KeepAndTell(result, problem.scenario, paths, out.path(), options.json);
+  folder.KeepAndTell(result, problem.scenario, options.json);
   return 0;
 }
 

@@ -91,6 +91,7 @@ bench::WorldFactory HardwareWorlds(const DataPaths& paths, const std::string& ad
     world.model_xml = sim::BuildWorldXml(scenario, robot.mount_links(), paths.models);
     world.joints = robot.joint_names();
     world.obstacles = stage->obstacles().obstacles();
+    world.facts["robot_at"] = address + (IsLoopback(address) ? " (simulated)" : "");
     world.owner = stage;
     return world;
   };

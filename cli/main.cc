@@ -56,6 +56,7 @@ int Run(int argc, char** argv) {
       "installed ones; MUJOCO_GL may only be osmesa, or not set.");
   sidestep::cli::AddRunCommand(line);
   sidestep::cli::AddCompareCommand(line);
+  sidestep::cli::AddSalvageCommand(line);
   sidestep::cli::AddRenderCommand(line);
   sidestep::cli::AddReproduceCommand(line);
   sidestep::cli::AddStudyCommand(line);

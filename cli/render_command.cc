@@ -13,6 +13,7 @@
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/number_range.h"
+#include "sidestep/cli/run_folder.h"
 #include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/record/recording_file.h"
@@ -100,9 +101,24 @@ bool ShowProgress(int done, int total) {
   return interrupted == 0;
 }
 
+// Of a run that was killed there is no trace yet.
+void CheckIsNotOnlyAJournal(const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  std::error_code error;
+  if (std::filesystem::exists(path, error)) return;
+  if (!std::filesystem::exists(folder / kJournalName, error)) return;
+  throw InputError(path,
+                   "no such file, but the journal of a run that was cut off: first "
+                   "`sidestep salvage " +
+                       (folder.empty() ? "." : folder.string()) + "`");
+}
+
 std::vector<render::NamedRecording> ReadTraces(const std::vector<std::string>& paths) {
   std::vector<render::NamedRecording> traces;
-  for (const std::string& path : paths) traces.push_back({path, record::ReadRecording(path)});
+  for (const std::string& path : paths) {
+    CheckIsNotOnlyAJournal(path);
+    traces.push_back({path, record::ReadRecording(path)});
+  }
   return traces;
 }
 

@@ -7,8 +7,8 @@
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/number_range.h"
-#include "sidestep/cli/out_folder.h"
-#include "sidestep/cli/run_summary.h"
+#include "sidestep/cli/provenance.h"
+#include "sidestep/cli/run_folder.h"
 #include "sidestep/cli/scenario_options.h"
 #include "sidestep/cli/stop_signals.h"
 #include "sidestep/cli/thin_things.h"
@@ -35,19 +35,19 @@ int Run(const RunOptions& options) {
     throw InputError("--clock",
                      "on a wall clock planning takes time: --latency charged or measured");
   }
-  const OutFolder out(options.out.empty()
-                          ? "out/" + problem.scenario.name + "/" + problem.scenario.knowledge
-                          : options.out,
-                      {"trace.h5", "result.json"});
+  RunFolder folder(options.out.empty()
+                       ? "out/" + problem.scenario.name + "/" + problem.scenario.knowledge
+                       : options.out,
+                   Identify(problem.scenario, paths));
   const StopSignals signals;
-  const bench::EpisodeOptions episode = {.observe_field = {},
-                                         .why_stop = [&] { return signals.first(); },
-                                         .clock = options.clock == "wall"
-                                                      ? bench::EpisodeClock::kWall
-                                                      : bench::EpisodeClock::kVirtual};
+  const bench::EpisodeOptions episode = {
+      .observe_field = {},
+      .why_stop = [&] { return signals.first(); },
+      .clock = options.clock == "wall" ? bench::EpisodeClock::kWall : bench::EpisodeClock::kVirtual,
+      .journal = &folder.journal()};
   bench::EpisodeResult result =
       bench::RunEpisode(problem.scenario, problem.robot, SimulatedWorlds(paths), episode);
-  KeepAndTell(result, problem.scenario, paths, out.path(), options.json);
+  folder.KeepAndTell(result, problem.scenario, options.json);
   return 0;
 }
 

@@ -1,16 +1,15 @@
 #include "sidestep/cli/run_summary.h"
 
+#include <map>
+#include <string>
 #include <vector>
 
+#include "sidestep/bench/metrics/robot_limit_metrics.h"
 #include "sidestep/bench/outcome.h"
 #include "sidestep/bench/result_file.h"
 #include "sidestep/bench/statistics.h"
 #include "sidestep/cli/console.h"
-#include "sidestep/cli/provenance.h"
-#include "sidestep/cli/versions.h"
-#include "sidestep/core/atomic_file.h"
 #include "sidestep/core/number_text.h"
-#include "sidestep/record/recording_file.h"
 
 namespace sidestep::cli {
 namespace {
@@ -19,7 +18,8 @@ namespace {
 void PrintPlanningTime(const bench::EpisodeResult& result, const scenarios::Scenario& scenario) {
   const std::vector<double>& cycle_s = result.times.at("cycle");
   if (cycle_s.empty()) {
-    Print("planning cycle   - (there was none)\n");
+    const bool took_time = !result.recording.cycles.empty();  // and nobody is left who knows it
+    Print("planning cycle   - {}\n", took_time ? "(not known)" : "(there was none)");
     return;
   }
   Print("planning cycle   {:.1f} ms CPU (median of {}), ", 1e3 * bench::Quantile(cycle_s, 0.5),
@@ -39,6 +39,19 @@ void PrintPlanningTime(const bench::EpisodeResult& result, const scenarios::Scen
   if (result.late_plans > 0) Print("late plans       {}, dropped\n", result.late_plans);
 }
 
+void PrintTrips(const std::map<std::string, double>& metrics) {
+  std::string shares, tripped;
+  for (const bench::TripMetric& metric : bench::kTripMetrics) {
+    shares += (shares.empty() ? "" : ", ") + std::string(metric.words) + " " +
+              FiniteText("{:.2f}", metrics.at(metric.name), "not known");
+  }
+  for (const bench::TripMetric& metric : bench::TrippedBy(metrics)) {
+    tripped += (tripped.empty() ? "" : ", ") + std::string(metric.words);
+  }
+  Print("would it trip    {}; of the robot's limits: {}\n",
+        tripped.empty() ? "no" : "yes, " + tripped, shares);
+}
+
 }  // namespace
 
 void PrintOutcome(const bench::EpisodeResult& result, const scenarios::Scenario& scenario) {
@@ -46,7 +59,8 @@ void PrintOutcome(const bench::EpisodeResult& result, const scenarios::Scenario&
   const auto number = [&](const char* name, double scale, const char* format) {
     return FiniteText(format, scale * metrics.at(name));
   };
-  Print("outcome          {}\n", bench::Tell(result.outcome, bench::TouchedBy(result.recording)));
+  Print("outcome          {}\n",
+        bench::Tell(result.outcome, bench::TouchedBy(result.recording), bench::Ending(metrics)));
   if (!result.reason.empty()) Print("reason           {}\n", result.reason);
   Print("first contact    {}\n", number("first_contact_s", 1, "{:.3f} s"));
   Print("least clearance  {}\n", number("min_clearance_m", 1e3, "{:.1f} mm"));
@@ -58,6 +72,7 @@ void PrintOutcome(const bench::EpisodeResult& result, const scenarios::Scenario&
   }
   Print("GP cost          {}\n", number("gp_cost", 1, "{:.2f}"));
   Print("jerk RMS         {}\n", number("jerk_rms", 1, "{:.1f} rad/s^3"));
+  PrintTrips(metrics);
   if (metrics.at("samples_outside_grid") > 0) {
     Print("outside the map  {} places of planned motion: nothing is seen there\n",
           metrics.at("samples_outside_grid"));
@@ -68,26 +83,11 @@ void PrintOutcome(const bench::EpisodeResult& result, const scenarios::Scenario&
           1e6 * bench::Quantile(result.answers_s, 0.999),
           1e6 * bench::Quantile(result.answers_s, 1), result.answers_s.size());
   }
-  if (!result.safety_events.empty()) {
-    Print("supervisor       {} findings, the first at {:.3f} s: {}\n", result.safety_events.size(),
-          result.safety_events.front().t.seconds(), result.safety_events.front().check);
+  const std::vector<SafetyEvent>& findings = result.recording.safety;
+  if (!findings.empty()) {
+    Print("supervisor       {} findings, the first at {:.3f} s: {}\n", findings.size(),
+          findings.front().t.seconds(), findings.front().check);
   }
-}
-
-void KeepAndTell(bench::EpisodeResult& result, const scenarios::Scenario& scenario,
-                 const DataPaths& paths, const std::string& out, bool as_json) {
-  const bench::RunIdentity identity = Identify(scenario, paths);
-  AddProvenance(identity, result.recording);
-  record::WriteRecording(result.recording, out + "/trace.h5");
-  const std::string json = bench::ResultJson(result, scenario, identity, Versions());
-  WriteFile(out + "/result.json", json);
-  if (as_json) {
-    PrintText(json);
-  } else {
-    PrintOutcome(result, scenario);
-    Print("written          {}/result.json, {}/trace.h5\n", out, out);
-  }
-  bench::RequireWhole(result);  // what there is has been written
 }
 
 }  // namespace sidestep::cli

@@ -109,6 +109,9 @@ class Hdf5ImageReader {
   /// many.
   void Claim(const std::string& path, double num_bytes) const;
 
+  /// What may still be read.
+  std::size_t bytes_left() const { return static_cast<std::size_t>(most_bytes_ - claimed_bytes_); }
+
   [[noreturn]] void Fail(const std::string& path, const std::string& why) const;
 
  private:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 namespace sidestep::record {
 namespace {
@@ -14,6 +15,12 @@ Touch TouchOf(const TruthSample& sample) {
   const bool timed = std::isfinite(sample.contact_s);
   return {timed ? EpisodeTime(sample.contact_s) : sample.t, sample.contact_object,
           sample.p_WContact};
+}
+
+constexpr std::string_view kHold = "hold", kBrake = "brake";  // words of control/safety.h
+
+int GravityOf(const SafetyEvent& event) {
+  return event.reaction == kBrake ? 3 : event.reaction == kHold ? 2 : event.reaction == "refuse";
 }
 
 }  // namespace
@@ -65,6 +72,23 @@ std::optional<Clearance> LeastClearance(const Recording& recording, EpisodeTime 
     if (!least || sample.clearance_m < least->clearance_m) least = {sample.t, sample.clearance_m};
   }
   return least;
+}
+
+std::optional<SafetyEvent> FindingWithin(const Recording& recording, EpisodeTime t,
+                                         HorizonOffset window) {
+  std::optional<SafetyEvent> gravest;
+  for (const SafetyEvent& event : recording.safety) {
+    if (event.t > t || event.t < t - window) continue;
+    if (!gravest || GravityOf(event) >= GravityOf(*gravest)) gravest = event;
+  }
+  return gravest;
+}
+
+std::optional<EpisodeTime> FirstStop(const Recording& recording) {
+  for (const SafetyEvent& event : recording.safety) {
+    if (event.reaction == kHold || event.reaction == kBrake) return event.t;
+  }
+  return std::nullopt;
 }
 
 }  // namespace sidestep::record

@@ -38,4 +38,11 @@ std::optional<Clearance> ClearanceAt(const Recording& recording, EpisodeTime t);
 std::optional<Clearance> LeastClearance(const Recording& recording);
 std::optional<Clearance> LeastClearance(const Recording& recording, EpisodeTime t);
 
+/// What the robot's supervisor began to find in the last `window` before `t`: the gravest, of equal
+/// ones the latest.
+std::optional<SafetyEvent> FindingWithin(const Recording& recording, EpisodeTime t,
+                                         HorizonOffset window);
+/// When it first made the robot hold or brake; none if it never did.
+std::optional<EpisodeTime> FirstStop(const Recording& recording);
+
 }  // namespace sidestep::record

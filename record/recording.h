@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -12,9 +13,10 @@
 
 namespace sidestep::record {
 
-/// What a motion was to keep to, as asked for: the robot's limits times the scenario's scales; of
-/// shape n, infinite where there is no limit.
-struct AskedLimits {
+inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
+/// Limits of a motion, each of shape n, infinite where there is none.
+struct MotionLimits {
   Eigen::VectorXd v_max, a_max, jerk_max, torque_rate_max;  ///< rad/s, rad/s^2, rad/s^3, N m/s
 };
 
@@ -47,14 +49,20 @@ struct Recording {
   std::vector<std::string> obstacles;  ///< mocap bodies, as in the MJCF
   Eigen::VectorXd q_start;
   Eigen::VectorXd q_goal;
-  double dwell_s = 0;     ///< how long the arm had to stay at its goal
-  Eigen::VectorXd v_max;  ///< the robot's velocity limits, rad/s
-  AskedLimits limits;
+  double dwell_s = 0;         ///< how long the arm had to stay at its goal
+  MotionLimits robot_limits;  ///< the robot's own
+  /// What the motion was to keep to, as asked for: the robot's times the scenario's scales.
+  MotionLimits limits;
+  double tool_a_max = kNoLimit;        ///< [m/s^2] what the robot's tool must not exceed
+  double tool_a_reflex = kNoLimit;     ///< [m/s^2] above it the robot is known to stop by itself
   std::vector<ControlSample> control;  ///< at the control rate
-  std::vector<TruthSample> truth;      ///< at 100 Hz
+  /// [m] where each command puts the tool, in W: one a control sample, or none where nobody knows.
+  std::vector<Eigen::Vector3d> p_WTool;
+  std::vector<TruthSample> truth;  ///< at 100 Hz
   std::vector<ObservationRecord> observations;
   std::vector<CycleRecord> cycles;
   std::vector<TrackEvent> events;         ///< of prediction only, in order
+  std::vector<SafetyEvent> safety;        ///< of the robot's supervisor, in order
   std::map<std::string, double> metrics;  ///< of this episode; NaN where one does not apply
 };
 

@@ -13,7 +13,7 @@
 namespace sidestep::record {
 namespace {
 
-const SealedFormat kFormat = {"sidestep trace", 2};
+const SealedFormat kFormat = {"sidestep trace", kTraceVersion};
 
 using Doubles = Hdf5Array<double>;
 using Integers = Hdf5Array<std::int64_t>;
@@ -37,26 +37,43 @@ bool Increase(const std::vector<double>& times) {
 }
 
 struct LimitColumn {
-  const char* path;
-  Eigen::VectorXd AskedLimits::*member;
+  const char* name;
+  Eigen::VectorXd MotionLimits::*member;
   const char* unit;
 };
 constexpr LimitColumn kLimitColumns[] = {
-    {"limits/v_max", &AskedLimits::v_max, "rad/s"},
-    {"limits/a_max", &AskedLimits::a_max, "rad/s^2"},
-    {"limits/jerk_max", &AskedLimits::jerk_max, "rad/s^3"},
-    {"limits/torque_rate_max", &AskedLimits::torque_rate_max, "N m/s"},
+    {"v_max", &MotionLimits::v_max, "rad/s"},
+    {"a_max", &MotionLimits::a_max, "rad/s^2"},
+    {"jerk_max", &MotionLimits::jerk_max, "rad/s^3"},
+    {"torque_rate_max", &MotionLimits::torque_rate_max, "N m/s"},
 };
+struct LimitGroup {
+  const char* name;
+  MotionLimits Recording::*member;
+};
+constexpr LimitGroup kLimitGroups[] = {{"robot_limits", &Recording::robot_limits},
+                                       {"limits", &Recording::limits}};
+
+// One after the other, by their paths.
+template <typename Limits, typename Do>
+void ForEachLimit(Limits& recording, const Do& act) {
+  for (const LimitGroup& group : kLimitGroups) {
+    for (const LimitColumn& column : kLimitColumns) {
+      act(std::string(group.name) + "/" + column.name, recording.*group.member.*column.member,
+          column.unit);
+    }
+  }
+}
 
 void CheckRecording(const Recording& recording) {
   const auto n = static_cast<Eigen::Index>(recording.joints.size());
   Require(recording.q_start.size() == n, "q_start needs one number a joint");
   Require(recording.q_goal.size() == n, "q_goal needs one number a joint");
-  Require(recording.v_max.size() == n, "v_max needs one number a joint");
-  for (const LimitColumn& column : kLimitColumns) {
-    Require((recording.limits.*column.member).size() == n,
-            std::string(column.path) + " needs one number a joint");
-  }
+  ForEachLimit(recording, [&](const std::string& path, const Eigen::VectorXd& limit, const char*) {
+    Require(limit.size() == n, path + " needs one number a joint");
+  });
+  Require(recording.p_WTool.empty() || recording.p_WTool.size() == recording.control.size(),
+          "the tool needs one position a control sample, or none");
   Require(Increase(Times(recording.control)), "the times of control must increase");
   Require(Increase(Times(recording.truth)), "the times of truth must increase");
   Require(Increase(Times(recording.observations)), "the times of observations must increase");
@@ -172,11 +189,11 @@ void WriteProblem(Hdf5ImageWriter& file, const Recording& recording) {
   write_joints("q_start", recording.q_start, "rad");
   write_joints("q_goal", recording.q_goal, "rad");
   file.Write("dwell", Doubles{{}, {recording.dwell_s}}, "s");
-  write_joints("v_max", recording.v_max, "rad/s");
-  file.MakeGroup("limits");
-  for (const LimitColumn& column : kLimitColumns) {
-    write_joints(column.path, recording.limits.*column.member, column.unit);
-  }
+  for (const LimitGroup& group : kLimitGroups) file.MakeGroup(group.name);
+  ForEachLimit(recording, write_joints);
+  file.MakeGroup("tool");
+  file.Write("tool/a_max", Doubles{{}, {recording.tool_a_max}}, "m/s^2");
+  file.Write("tool/a_reflex", Doubles{{}, {recording.tool_a_reflex}}, "m/s^2");
 }
 
 struct ControlColumn {
@@ -205,6 +222,8 @@ void WriteControl(Hdf5ImageWriter& file, const Recording& recording) {
                    n, [&](const auto& sample) -> const auto& { return sample.*column.member; }),
                column.unit);
   }
+  const auto identity = [](const Eigen::Vector3d& p) -> const Eigen::Vector3d& { return p; };
+  file.Write("tool/position", VectorColumn(recording.p_WTool, 3, identity), "m");
 }
 
 void WriteTruth(Hdf5ImageWriter& file, const Recording& recording) {
@@ -306,6 +325,16 @@ void WriteEvents(Hdf5ImageWriter& file, const Recording& recording) {
              VectorColumn(
                  events, 3, [](const auto& e) -> const auto& { return e.p_W; }),
              "m");
+}
+
+void WriteSafety(Hdf5ImageWriter& file, const Recording& recording) {
+  const std::vector<SafetyEvent>& safety = recording.safety;
+  file.MakeGroup("safety");
+  file.Write("safety/t", Column(safety, [](const auto& e) { return e.t.seconds(); }), "s");
+  file.Write("safety/check", StringColumn(safety, [](const auto& e) { return e.check; }));
+  file.Write("safety/reaction", StringColumn(safety, [](const auto& e) { return e.reaction; }));
+  file.Write("safety/value", Column(safety, [](const auto& e) { return e.value; }));
+  file.Write("safety/limit", Column(safety, [](const auto& e) { return e.limit; }));
 }
 
 void WriteObservations(Hdf5ImageWriter& file, const Recording& recording) {
@@ -415,10 +444,11 @@ void ReadProblem(const Hdf5ImageReader& file, Recording* recording) {
   recording->q_goal = read_joints("q_goal");
   recording->dwell_s = file.ReadDoubles("dwell", {}).values.front();
   if (!(recording->dwell_s >= 0)) file.Fail("dwell", "must be >= 0");
-  recording->v_max = read_joints("v_max");
-  for (const LimitColumn& column : kLimitColumns) {
-    recording->limits.*column.member = read_joints(column.path);
-  }
+  ForEachLimit(*recording, [&](const std::string& path, Eigen::VectorXd& limit, const char*) {
+    limit = read_joints(path);
+  });
+  recording->tool_a_max = file.ReadDoubles("tool/a_max", {}).values.front();
+  recording->tool_a_reflex = file.ReadDoubles("tool/a_reflex", {}).values.front();
 }
 
 void ReadControl(const Hdf5ImageReader& file, Recording* recording) {
@@ -434,6 +464,14 @@ void ReadControl(const Hdf5ImageReader& file, Recording* recording) {
     for (std::size_t i = 0; i < t.values.size(); ++i) {
       recording->control[i].*column.member = VectorAt(values, i);
     }
+  }
+  const Doubles tool = file.ReadDoubles("tool/position", {kAny, 3});
+  const std::size_t num_positions = tool.shape.front();
+  if (num_positions != 0 && num_positions != t.values.size()) {
+    file.Fail("tool/position", "must have one row a control tick, or none");
+  }
+  for (std::size_t i = 0; i < num_positions; ++i) {
+    recording->p_WTool.emplace_back(VectorAt(tool, i));
   }
 }
 
@@ -562,6 +600,19 @@ void ReadEvents(const Hdf5ImageReader& file, Recording* recording) {
   }
 }
 
+void ReadSafety(const Hdf5ImageReader& file, Recording* recording) {
+  const Doubles t = ReadTimes(file, "safety/t", kAny);
+  const hsize_t num_rows = t.values.size();
+  const Strings check = file.ReadStrings("safety/check", {num_rows});
+  const Strings reaction = file.ReadStrings("safety/reaction", {num_rows});
+  const Doubles value = file.ReadDoubles("safety/value", {num_rows});
+  const Doubles limit = file.ReadDoubles("safety/limit", {num_rows});
+  for (std::size_t i = 0; i < num_rows; ++i) {
+    recording->safety.push_back({EpisodeTime(t.values[i]), check.values[i], reaction.values[i],
+                                 value.values[i], limit.values[i]});
+  }
+}
+
 void ReadObservations(const Hdf5ImageReader& file, Recording* recording) {
   const Doubles t = ReadIncreasingTimes(file, "observations/t");
   const std::size_t num_rows = t.values.size();
@@ -594,7 +645,10 @@ void ReadObservations(const Hdf5ImageReader& file, Recording* recording) {
   }
 }
 
+}  // namespace
+
 std::vector<unsigned char> ToHdf5(const Recording& recording) {
+  CheckRecording(recording);
   Hdf5ImageWriter file;
   file.SetAttribute("format", kFormat.name);
   file.SetAttribute("version", kFormat.version);
@@ -604,20 +658,14 @@ std::vector<unsigned char> ToHdf5(const Recording& recording) {
   WriteTruth(file, recording);
   WriteCycles(file, recording);
   WriteEvents(file, recording);
+  WriteSafety(file, recording);
   WriteObservations(file, recording);
   return file.Finish();
 }
 
-}  // namespace
-
-void WriteRecording(const Recording& recording, const std::string& path) {
-  CheckRecording(recording);
-  WriteSealedFile(path, kFormat, ToHdf5(recording));
-}
-
-Recording ReadRecording(const std::string& path) {
-  const std::vector<unsigned char> payload = ReadSealedFile(path, kFormat);
-  const Hdf5ImageReader file(payload, path);
+Recording FromHdf5(std::span<const unsigned char> payload, const std::string& name,
+                   std::size_t* most_bytes) {
+  const Hdf5ImageReader file(payload, name, *most_bytes);
   if (file.GetIntegerAttribute("version") != kFormat.version) {
     file.Fail("version", "differs from the one in the file's head");
   }
@@ -627,8 +675,19 @@ Recording ReadRecording(const std::string& path) {
   ReadTruth(file, &recording);
   ReadCycles(file, &recording);
   ReadEvents(file, &recording);
+  ReadSafety(file, &recording);
   ReadObservations(file, &recording);
+  *most_bytes = file.bytes_left();
   return recording;
+}
+
+void WriteRecording(const Recording& recording, const std::string& path) {
+  WriteSealedFile(path, kFormat, ToHdf5(recording));
+}
+
+Recording ReadRecording(const std::string& path) {
+  std::size_t most_bytes = Hdf5ImageReader::kMostBytes;
+  return FromHdf5(ReadSealedFile(path, kFormat), path, &most_bytes);
 }
 
 std::string Hdf5Version() {

@@ -27,4 +27,13 @@ void WriteSealedFile(const std::string& path, const SealedFormat& format,
 /// another format or version, cut off or damaged.
 std::vector<unsigned char> ReadSealedFile(const std::string& path, const SealedFormat& format);
 
+/// What a file of sealed payloads, one after the other, holds.
+struct SealedRow {
+  std::vector<std::vector<unsigned char>> payloads;  ///< the whole ones, up to where one is not
+  std::string damage;  ///< what is wrong there; empty if the file ends there
+};
+
+/// Reads all that is whole. @throws InputError as ReadSealedFile does if not even the first one is.
+SealedRow ReadSealedRow(const std::string& path, const SealedFormat& format);
+
 }  // namespace sidestep::record

@@ -1,5 +1,6 @@
 #include "sidestep/render/captions.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -11,6 +12,7 @@ namespace sidestep::render {
 namespace {
 
 constexpr double kNear_m = 0.05;
+constexpr double kShowFinding_s = 1;
 
 struct Wording {
   const char* knowledge;
@@ -53,7 +55,23 @@ Color ColorOf(Mood mood) {
   return {};
 }
 
-Status StatusAt(const record::Recording& recording, EpisodeTime t) {
+namespace {
+
+// "supervisor BRAKES: stop path": what it did in the last second.
+std::string Supervision(const SafetyEvent& event) {
+  const struct {
+    const char *reaction, *words;
+  } wordings[] = {{"refuse", "refuses a plan"}, {"hold", "HOLDS"}, {"brake", "BRAKES"}};
+  std::string text = "supervisor notes";
+  for (const auto& [reaction, words] : wordings) {
+    if (event.reaction == reaction) text = std::string("supervisor ") + words;
+  }
+  std::string check = event.check;
+  std::replace(check.begin(), check.end(), '_', ' ');
+  return text + ": " + check;
+}
+
+Status EpisodeStatusAt(const record::Recording& recording, EpisodeTime t) {
   const auto outcome = recording.header.find("outcome");
   const bool is_cut_off = outcome != recording.header.end() && outcome->second == "aborted" &&
                           t >= record::EndOf(recording);
@@ -79,13 +97,35 @@ Status StatusAt(const record::Recording& recording, EpisodeTime t) {
             Mood::kGood};
   }
   if (knows_goal && t >= record::EndOf(recording)) {
-    return {"goal not reached" + (least ? ", " + least_text : ""), Mood::kNear};
+    return {"goal not reached, " + (least ? least_text : "contact unjudged"), Mood::kNear};
   }
   const std::optional<record::Clearance> now = record::ClearanceAt(recording, t);
-  if (!now) return {"", Mood::kNeutral};
+  if (!now) {
+    const bool is_unjudged = outcome != recording.header.end() && outcome->second == "unjudged";
+    return {is_unjudged ? "contact unjudged" : "", Mood::kNeutral};
+  }
   return {"clearance " + Millimetres(now->clearance_m) +
               (least ? ", least so far " + Millimetres(least->clearance_m) : ""),
           now->clearance_m < kNear_m ? Mood::kNear : Mood::kNeutral};
+}
+
+}  // namespace
+
+Status StatusAt(const record::Recording& recording, EpisodeTime t) {
+  Status status = EpisodeStatusAt(recording, t);
+  const auto found = record::FindingWithin(recording, t, HorizonOffset(kShowFinding_s));
+  if (!found) return status;
+  status.text = Supervision(*found) + (status.text.empty() ? "" : "; " + status.text);
+  const bool stops = found->reaction == "hold" || found->reaction == "brake";
+  if (stops && status.mood != Mood::kBad) status.mood = Mood::kNear;
+  return status;
+}
+
+std::string PlaceOf(const record::Recording& recording) {
+  const auto robot_at = recording.header.find("robot_at");
+  if (robot_at == recording.header.end()) return "";
+  return "robot at " + robot_at->second +
+         (recording.obstacles.empty() ? "" : ", obstacles virtual");
 }
 
 }  // namespace sidestep::render

@@ -26,7 +26,11 @@ struct Status {
 };
 /// A contact stays in the status for good. The goal counts as reached at the metric
 /// `time_to_goal_s`; without a truth nobody judged contact, and it says so. What was aborted says
-/// so at its end.
+/// so at its end. What the robot's supervisor found stands before it for a second.
 Status StatusAt(const record::Recording& recording, EpisodeTime t);
+
+/// Where the robot was, on hardware: "robot at 172.16.0.2, obstacles virtual". Empty for a
+/// simulation.
+std::string PlaceOf(const record::Recording& recording);
 
 }  // namespace sidestep::render

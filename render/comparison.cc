@@ -17,6 +17,7 @@ constexpr Color kWhite = {255, 255, 255};
 constexpr Color kPale = {184, 194, 208};
 constexpr Color kBackground = {22, 26, 33};
 constexpr Color kTitleBar = {36, 42, 52};
+constexpr Color kHardware = {112, 58, 140};
 
 // Of a picture 720 lines high; others scale.
 constexpr double kHeaderHeight = 40, kLegendHeight = 34, kBarHeight = 30, kGap = 4;
@@ -125,7 +126,11 @@ EpisodeTime Comparison::telling_moment() const {
     if (clearance && (!least || clearance->clearance_m < least->clearance_m)) least = clearance;
   }
   if (first_touch) return *first_touch;
-  return least ? least->t : EpisodeTime(0);
+  if (least) return least->t;
+  for (const Panel& panel : panels_) {
+    if (const auto stop = record::FirstStop(panel.model.recording())) return *stop;
+  }
+  return EpisodeTime(0);
 }
 
 std::vector<std::string> Comparison::names_not_shown() const {
@@ -195,6 +200,17 @@ void Comparison::DrawPanel(Image& image, Panel& panel, EpisodeTime t) const {
   x += inset;
   if (x + font_.Width(panel.title.explanation, small) < place.x + place.width - inset) {
     font_.Draw(image, x, place.y + (bar - small) / 2, small, kPale, panel.title.explanation);
+  }
+
+  const std::string where = PlaceOf(recording);
+  if (!where.empty()) {
+    const double pad = inset / 2;
+    const double shrink = std::min(1.0, space / font_.Width(where, small));
+    image.Fill(
+        {panel.scene.x, panel.scene.y, ToPixels(font_.Width(where, small * shrink) + 2 * pad),
+         ToPixels(small * shrink + 2 * pad)},
+        kHardware);
+    font_.Draw(image, panel.scene.x + pad, panel.scene.y + pad, small * shrink, kWhite, where);
   }
 
   const Status status = StatusAt(recording, own_t);

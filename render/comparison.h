@@ -44,7 +44,8 @@ class Comparison {
   int height() const { return height_; }
   /// When the last episode is over.
   EpisodeTime end() const;
-  /// The moment that tells most: the first contact; if there is none, the least clearance.
+  /// The moment that tells most: the first contact; if there is none, the least clearance; without
+  /// a truth, the first stop by a supervisor.
   EpisodeTime telling_moment() const;
 
   /// Of the names that are written on the pictures, those with letters that the font has not, and

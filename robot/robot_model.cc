@@ -43,6 +43,14 @@ JointLimits ReadLimits(const YamlReader& map) {
   return limits;
 }
 
+ToolLimits ReadToolLimits(const YamlReader& map) {
+  ToolLimits limits;
+  if (map.Has("a_max_m_s2")) limits.a_max = map.GetPositive("a_max_m_s2");
+  if (map.Has("a_reflex_m_s2")) limits.a_reflex = map.GetPositive("a_reflex_m_s2");
+  map.CheckNoUnknownKeys();
+  return limits;
+}
+
 CollisionSphere ReadSphere(const YamlReader& map, int num_joints) {
   CollisionSphere sphere;
   sphere.link = map.GetInt("link");
@@ -213,6 +221,7 @@ RobotModel RobotModel::FromFile(const std::string& path, const Pose& X_WB) {
     model.radii_m_(s) = model.spheres_[static_cast<std::size_t>(s)].radius_m;
   }
 
+  if (file.Has("tool")) model.tool_limits_ = ReadToolLimits(file.GetMap("tool"));
   if (file.Has("capsules")) {
     for (const YamlReader& capsule : file.GetMaps("capsules")) {
       model.capsules_.push_back(ReadCapsule(capsule, n));

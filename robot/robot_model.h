@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -39,6 +40,12 @@ struct CollisionCapsule {
   int link = 0;
   Eigen::Vector3d p_LA = Eigen::Vector3d::Zero(), p_LB = Eigen::Vector3d::Zero();  ///< [m]
   double radius_m = 0;
+};
+
+/// What the tool, the frame after the last row, must not exceed; infinite where nothing is known.
+struct ToolLimits {
+  double a_max = std::numeric_limits<double>::infinity();     ///< [m/s^2] the robot's own limit
+  double a_reflex = std::numeric_limits<double>::infinity();  ///< above it a reflex was reported
 };
 
 /// Two links (0-based DH rows, first < second) that could touch each other.
@@ -82,6 +89,7 @@ class RobotModel {
   const std::vector<std::string>& joint_names() const { return joint_names_; }
   const std::vector<DhRow>& dh() const { return dh_; }
   const std::vector<JointLimits>& limits() const { return limits_; }
+  const ToolLimits& tool_limits() const { return tool_limits_; }
   const std::vector<CollisionSphere>& spheres() const { return spheres_; }
   const Eigen::VectorXd& sphere_radii_m() const { return radii_m_; }  ///< shape S
   double largest_sphere_radius_m() const { return radii_m_.maxCoeff(); }
@@ -124,6 +132,7 @@ class RobotModel {
   std::vector<DhRow> dh_;
   std::vector<double> cos_alpha_, sin_alpha_;  // of dh_: half of all trigonometry
   std::vector<JointLimits> limits_;
+  ToolLimits tool_limits_;
   std::vector<CollisionSphere> spheres_;
   std::vector<CollisionCapsule> capsules_;
   Eigen::VectorXd radii_m_;

@@ -46,8 +46,9 @@ const Names kForeignRandom = {"<random>",           "_distribution<",
                               "std::shuffle",       "std::ranges::shuffle",
                               "std::random_device", "std::rand(",
                               "::Random(",          "setRandom("};
-// Programs of their own, and the log of a study, which grows as the study goes on.
-const Names kOutsideTheCrafts = {"bench/micro/", "bench/peers/", "bench/study_log."};
+// Programs of their own, and what grows on the disk as the work goes on.
+const Names kOutsideTheCrafts = {"bench/micro/", "bench/peers/", "bench/study_log.",
+                                 "record/journal."};
 
 bool StartsWith(std::string_view text, std::string_view prefix) {
   return text.substr(0, prefix.size()) == prefix;

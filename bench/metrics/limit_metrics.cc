@@ -17,7 +17,7 @@ bool HasLimit(const Eigen::VectorXd& limits) {
   return std::any_of(limits.begin(), limits.end(), [](double x) { return std::isfinite(x); });
 }
 
-std::vector<robot::JointLimits> JointLimitsOf(const record::AskedLimits& asked) {
+std::vector<robot::JointLimits> JointLimitsOf(const record::MotionLimits& asked) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   std::vector<robot::JointLimits> joints;
   for (Eigen::Index j = 0; j < asked.v_max.size(); ++j) {
@@ -27,7 +27,7 @@ std::vector<robot::JointLimits> JointLimitsOf(const record::AskedLimits& asked) 
   return joints;
 }
 
-double PlannedUse(const record::Recording& recording, Eigen::VectorXd record::AskedLimits::*limit,
+double PlannedUse(const record::Recording& recording, Eigen::VectorXd record::MotionLimits::*limit,
                   double planner::LimitUse::*use) {
   if (!HasLimit(recording.limits.*limit)) return kNaN;
   const std::vector<robot::JointLimits> joints = JointLimitsOf(recording.limits);
@@ -74,15 +74,15 @@ double CommandedRateUse(const record::Recording& recording, const Eigen::VectorX
 }  // namespace
 
 double PlannedVelocityUse(const record::Recording& recording) {
-  return PlannedUse(recording, &record::AskedLimits::v_max, &planner::LimitUse::velocity);
+  return PlannedUse(recording, &record::MotionLimits::v_max, &planner::LimitUse::velocity);
 }
 
 double PlannedAccelerationUse(const record::Recording& recording) {
-  return PlannedUse(recording, &record::AskedLimits::a_max, &planner::LimitUse::acceleration);
+  return PlannedUse(recording, &record::MotionLimits::a_max, &planner::LimitUse::acceleration);
 }
 
 double PlannedJerkUse(const record::Recording& recording) {
-  return PlannedUse(recording, &record::AskedLimits::jerk_max, &planner::LimitUse::jerk);
+  return PlannedUse(recording, &record::MotionLimits::jerk_max, &planner::LimitUse::jerk);
 }
 
 double CommandedVelocityUse(const record::Recording& recording) {

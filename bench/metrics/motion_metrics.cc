@@ -82,13 +82,4 @@ double TrackingError(const record::Recording& recording) {
   return worst;
 }
 
-double VelocityUse(const record::Recording& recording) {
-  if (recording.v_max.size() == 0 || recording.control.empty()) return kNaN;
-  double worst = 0;
-  for (const ControlSample& tick : recording.control) {
-    worst = std::max(worst, tick.v_command.cwiseAbs().cwiseQuotient(recording.v_max).maxCoeff());
-  }
-  return worst;
-}
-
 }  // namespace sidestep::bench

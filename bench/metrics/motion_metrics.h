@@ -19,7 +19,5 @@ double GpCostOfMotion(const record::Recording& recording);
 double JerkRms(const record::Recording& recording);
 /// max over ticks and joints of |q_command - q| [rad].
 double TrackingError(const record::Recording& recording);
-/// max over ticks and joints of |v_command| / v_max.
-double VelocityUse(const record::Recording& recording);
 
 }  // namespace sidestep::bench

@@ -80,6 +80,7 @@ PandaPlant::PandaPlant(const robot::RobotModel& robot, World* world)
 
 Joints PandaPlant::q() const { return FromVector(world_.q()); }
 Joints PandaPlant::dq() const { return FromVector(world_.v()); }
+Joints PandaPlant::holding_torque() const { return FromVector(world_.bias_torque()); }
 Joints PandaPlant::motor_torque() const {
   Joints torque = FromVector(world_.motor_torque());
   for (std::size_t i = 0; i < torque.size(); ++i) torque[i] -= disturbance_[i];

@@ -34,7 +34,8 @@ class PandaPlant {
   double time_s() const { return world_.time().seconds(); }
   robot::fci::Joints q() const;
   robot::fci::Joints dq() const;
-  robot::fci::Joints motor_torque() const;  ///< of the last step, with gravity; not what disturbs
+  robot::fci::Joints holding_torque() const;  ///< that keeps the arm at rest: against gravity
+  robot::fci::Joints motor_torque() const;    ///< of the last step, with gravity; not what disturbs
 
   const JointTable& limits() const { return limits_; }
   JointImpedance impedance() const { return impedance_; }  ///< of robot.yaml

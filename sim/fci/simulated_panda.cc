@@ -46,6 +46,7 @@ SimulatedPanda::SimulatedPanda(PandaPlant* plant, FaultScript faults)
     : plant_(*plant), script_(std::move(faults)), faults_(script_) {
   settings_.impedance = plant_.impedance();
   reference_.q = plant_.q();
+  tau_J_ = plant_.holding_torque();
 }
 
 void SimulatedPanda::BeginAnew() {

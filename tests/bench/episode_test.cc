@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "sidestep/bench/metrics/registry.h"
+#include "sidestep/record/journal.h"
 #include "sidestep/record/recording_file.h"
 #include "tests/bench/kinematic_world.h"
 #include "tests/support/planar_arm.h"
@@ -44,6 +45,8 @@ seed: 1
 )",
                                   "loop.yaml");
 }
+
+constexpr double kLink_m = 0.5;  // of the planar arm, both
 
 class Episode : public ::testing::Test {
  protected:
@@ -101,7 +104,7 @@ TEST_F(Episode, InWhichTheArmCannotStayLongEnoughIsATimeout) {
 TEST_F(Episode, RecordsTheLimitsThatWereAskedFor) {
   scenario_.velocity_scale = 0.6;
   scenario_.acceleration_limits = false;
-  const record::AskedLimits limits = Run().recording.limits;
+  const record::MotionLimits limits = Run().recording.limits;
   EXPECT_EQ(limits.v_max, Eigen::Vector2d(0.6 * 2, 0.6 * 2));
   for (const Eigen::VectorXd* none : {&limits.a_max, &limits.jerk_max, &limits.torque_rate_max}) {
     EXPECT_EQ(none->size(), 2);
@@ -247,9 +250,9 @@ TEST_F(Episode, ThatIsStoppedFromOutsideBrakesAndKeepsWhatHappened) {
   const EpisodeResult result = RunEpisode(scenario_, arm_, world_.Factory(), options);
   EXPECT_EQ(result.outcome, Outcome::kAborted);
   EXPECT_EQ(result.reason, "it was stopped from outside: a test");
-  ASSERT_EQ(result.safety_events.size(), 1u);
-  EXPECT_EQ(result.safety_events[0].check, "operator_stop");
-  EXPECT_EQ(result.safety_events[0].reaction, "brake");
+  ASSERT_EQ(result.recording.safety.size(), 1u);
+  EXPECT_EQ(result.recording.safety[0].check, "operator_stop");
+  EXPECT_EQ(result.recording.safety[0].reaction, "brake");
   EXPECT_TRUE(world_.holds);
   EXPECT_GE(result.recording.control.back().t.seconds(), 0.7);
   EXPECT_EQ(result.recording.cycles.size(), 8u);
@@ -385,6 +388,47 @@ INSTANTIATE_TEST_SUITE_P(OnTheWay, EpisodeThatFails,
                          ::testing::Values(Failure{"robot", 0}, Failure{"robot", 0.7123},
                                            Failure{"sensor", 0}, Failure{"sensor", 0.7},
                                            Failure{"truth", 0.7}, Failure{"observer", 0.7}));
+
+TEST_F(Episode, KeepsWhatTheSupervisorFoundWhenTheRobotFailed) {
+  world_.breaks = "robot";
+  world_.breaks_at_s = 0.7;
+  const record::Recording recording = Run().recording;
+  ASSERT_EQ(recording.safety.size(), 1u);
+  EXPECT_EQ(recording.safety.front().check, "link");
+}
+
+TEST_F(Episode, RecordsWhereEachCommandPutsTheTool) {
+  const record::Recording recording = Run().recording;
+  ASSERT_EQ(recording.p_WTool.size(), recording.control.size());
+  for (std::size_t i = 0; i < recording.control.size(); ++i) {
+    const Eigen::VectorXd& q = recording.control[i].q_command;
+    const Eigen::Vector3d elbow(kLink_m * std::cos(q(0)), kLink_m * std::sin(q(0)), 0);
+    const Eigen::Vector3d hand(kLink_m * std::cos(q.sum()), kLink_m * std::sin(q.sum()), 0);
+    ASSERT_LT((elbow + hand - recording.p_WTool[i]).norm(), 1e-12);
+  }
+}
+
+TEST_F(Episode, IsRecordedAlikeWithAJournalThatHoldsAllOfIt) {
+  const record::Recording without = Run().recording;
+  const TemporaryFolder folder;
+  const std::string path = folder.path() / "trace.journal";
+  EpisodeResult with;
+  {
+    record::Journal journal(path, {{"identity.run", "abc"}}, {});
+    EpisodeOptions options;
+    options.journal = &journal;
+    with = RunEpisode(scenario_, arm_, world_.Factory(), options);
+  }
+  EXPECT_EQ(record::ToHdf5(with.recording), record::ToHdf5(without));
+
+  const EpisodeResult cut_off = CutOffEpisode(record::ReadJournal(path).recording);
+  EXPECT_EQ(cut_off.outcome, Outcome::kAborted);
+  record::Recording salvaged = cut_off.recording;
+  EXPECT_EQ(salvaged.header.at("outcome"), "aborted");
+  EXPECT_EQ(salvaged.header.at("identity.run"), "abc");
+  salvaged.header = without.header;
+  EXPECT_EQ(record::ToHdf5(salvaged), record::ToHdf5(without));
+}
 
 TEST_F(Episode, ThatFailsAfterAContactKeepsTheContact) {
   scenario_.knowledge = "static";

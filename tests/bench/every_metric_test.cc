@@ -9,6 +9,7 @@
 #include <string>
 
 #include "sidestep/bench/metrics/registry.h"
+#include "sidestep/bench/metrics/robot_limit_metrics.h"
 
 namespace sidestep::bench {
 namespace {
@@ -20,7 +21,10 @@ record::Recording SmoothReach(double end_s = 1.5) {
   recording.q_start = Eigen::VectorXd::Zero(1);
   recording.q_goal = Eigen::VectorXd::Ones(1);
   recording.dwell_s = 0.2;
-  recording.v_max = Eigen::VectorXd::Constant(1, 2.0);
+  recording.robot_limits = {Eigen::VectorXd::Constant(1, 2.0), Eigen::VectorXd::Constant(1, 10.0),
+                            Eigen::VectorXd::Constant(1, 5e3), Eigen::VectorXd::Constant(1, 20.0)};
+  recording.tool_a_max = 12;
+  recording.tool_a_reflex = 2;
   recording.limits = {Eigen::VectorXd::Constant(1, 1.25), Eigen::VectorXd::Constant(1, 8.0),
                       Eigen::VectorXd::Constant(1, 1e4), Eigen::VectorXd::Constant(1, 20.0)};
   for (int i = 0; i <= std::lround(1000 * end_s); ++i) {
@@ -34,6 +38,7 @@ record::Recording SmoothReach(double end_s = 1.5) {
     tick.v = tick.v_command;
     tick.torque = Eigen::VectorXd::Constant(1, -5 * s);
     recording.control.push_back(tick);
+    recording.p_WTool.push_back({1, 0.6 * tick.q_command(0), -0.8 * tick.q_command(0)});
   }
   for (int i = 1; i <= std::lround(100 * end_s); ++i) {
     TruthSample sample;
@@ -102,7 +107,14 @@ constexpr Expected kKnown[] = {
     {"gp_cost", 6, 1e-6},
     {"jerk_rms", 12, 1e-6},
     {"tracking_error_rad", 1e-3, 1e-12},
-    {"velocity_use", 0.75, 1e-12},
+    // Differences of the cubic over h = 1 ms: 1.5 - 2 h^2 about its middle; 6 - 12 h at most; and
+    // (3 - 2 h) / h at the first tick, where the acceleration begins at once.
+    {"velocity_use", 0.749999, 1e-9},
+    {"acceleration_use", 0.5988, 1e-8},
+    {"jerk_use", 0.5996, 1e-6},
+    // The tool moves with the joint, 1 m a rad.
+    {"tool_acceleration_use", 0.499, 1e-8},
+    {"tool_reflex_use", 2.994, 1e-8},
     // 1.5 rad/s half way, 6 rad/s^2 at the ends, 12 rad/s^3 throughout.
     {"planned_velocity_use", 1.2, 1e-12},
     {"planned_acceleration_use", 0.75, 1e-12},
@@ -172,6 +184,29 @@ TEST(Metrics, OfLimitsThatNobodyAskedForAreNotANumber) {
                            "commanded_jerk_use", "commanded_torque_rate_use"}) {
     EXPECT_TRUE(std::isnan(Find(name).compute(recording))) << name;
   }
+}
+
+TEST(Metrics, OfLimitsThatNobodyKnowsAreNotANumber) {
+  record::Recording recording = SmoothReach();
+  recording.tool_a_max = recording.tool_a_reflex = record::kNoLimit;
+  for (Eigen::VectorXd* limit : {&recording.robot_limits.v_max, &recording.robot_limits.a_max,
+                                 &recording.robot_limits.jerk_max}) {
+    limit->setConstant(record::kNoLimit);
+  }
+  for (const char* name : {"velocity_use", "acceleration_use", "jerk_use", "tool_acceleration_use",
+                           "tool_reflex_use"}) {
+    EXPECT_TRUE(std::isnan(Find(name).compute(recording))) << name;
+  }
+}
+
+TEST(Metrics, SayWhatWouldHaveTripped) {
+  std::map<std::string, double> metrics;
+  for (const TripMetric& metric : kTripMetrics) metrics[metric.name] = 0.999;
+  EXPECT_TRUE(TrippedBy(metrics).empty());
+  metrics["jerk_use"] = std::numeric_limits<double>::quiet_NaN();
+  metrics["commanded_torque_rate_use"] = 1;
+  ASSERT_EQ(TrippedBy(metrics).size(), 1u);
+  EXPECT_STREQ(TrippedBy(metrics).front().words, "torque rate");
 }
 
 TEST(Metrics, OfAnEmptyRecordingAreZeroOrNotANumberAndNeverThrow) {

@@ -53,11 +53,14 @@ class Robot final : public robot::RobotInterface {
   void AdvanceTo(EpisodeTime t) override {
     while (now().seconds() < t.seconds() - 1e-9) {
       if (world_.breaks == "robot" && now().seconds() >= world_.breaks_at_s) {
+        findings_.push_back({now(), "link", "brake", 20, 19});
         throw robot::RobotError("the robot broke", TakeControlLog());
       }
       Tick();
     }
   }
+
+  std::vector<SafetyEvent> TakeSafetyEvents() override { return std::exchange(findings_, {}); }
 
   std::vector<ControlSample> TakeControlLog() override {
     const auto begin = history_.begin() + static_cast<std::ptrdiff_t>(taken_);
@@ -84,6 +87,7 @@ class Robot final : public robot::RobotInterface {
   Eigen::VectorXd q_, v_, a_;
   std::optional<Trajectory> trajectory_;
   EpisodeTime start_;
+  std::vector<SafetyEvent> findings_;
   std::vector<ControlSample> history_;
 };
 

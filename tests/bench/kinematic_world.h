@@ -15,7 +15,7 @@ struct KinematicWorld {
   bool judges = true;  ///< false: there is no WorldTruth, as on hardware
 
   /// Who throws, from `breaks_at_s` on: "robot" (in AdvanceTo; with its last ticks, which nobody
-  /// has taken), "sensor", "truth"; empty: nobody.
+  /// has taken, and a finding of its supervisor), "sensor", "truth"; empty: nobody.
   std::string breaks;
   double breaks_at_s = 0;
 

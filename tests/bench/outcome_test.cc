@@ -52,10 +52,21 @@ TEST(Outcome, IsReadBackFromItsWord) {
 }
 
 TEST(Outcome, IsToldWithWhatWasTouched) {
-  EXPECT_EQ(Tell(Outcome::kCollision, "hsr"), "collision with hsr");
-  EXPECT_EQ(Tell(Outcome::kAborted, "hsr"), "aborted, touched hsr");
-  EXPECT_EQ(Tell(Outcome::kCollision, ""), "collision");
-  EXPECT_EQ(Tell(Outcome::kGoal, ""), "goal");
+  EXPECT_EQ(Tell(Outcome::kCollision, "hsr", Outcome::kGoal), "collision with hsr");
+  EXPECT_EQ(Tell(Outcome::kAborted, "hsr", Outcome::kTimeout), "aborted, touched hsr");
+  EXPECT_EQ(Tell(Outcome::kCollision, "", Outcome::kGoal), "collision");
+  EXPECT_EQ(Tell(Outcome::kGoal, "", Outcome::kGoal), "goal");
+}
+
+TEST(Outcome, ThatNobodyJudgedSaysHowTheEpisodeEnded) {
+  const auto tell = [](double time_to_goal_s, double plans_accepted) {
+    return Tell(Outcome::kUnjudged, "",
+                Ending({{"time_to_goal_s", time_to_goal_s}, {"plans_accepted", plans_accepted}}));
+  };
+  EXPECT_EQ(tell(2.5, 3), "unjudged, goal");
+  EXPECT_EQ(tell(0, 0), "unjudged, goal");
+  EXPECT_EQ(tell(kNever, 3), "unjudged, timeout");
+  EXPECT_EQ(tell(kNever, 0), "unjudged, planner_failed");
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <ostream>
@@ -12,6 +14,7 @@
 #include <vector>
 
 #include "sidestep/hardware/raw_fci_driver.h"
+#include "sidestep/record/recording_file.h"
 #include "tests/hardware/own_loopback.h"
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
@@ -122,6 +125,39 @@ TEST(FciServerCommand, TellsWhatHappens) {
         "s: disconnected: ", "least clearance  "}) {
     EXPECT_THAT(finished.out, HasSubstr(line));
   }
+}
+
+TEST(FciServerCommand, WritesATraceOfWhatTrulyHappened) {
+  const TemporaryFolder folder;
+  const std::string out = folder.path() / "out";
+  Finished finished;
+  std::thread server([&] { finished = RunProgram(Serve({"--once", "--out", out})); });
+  if (auto driver = ConnectOnceThere()) {
+    const auto swing = [t_s = 0.0, start = robot::fci::Joints{}](
+                           const hardware::RobotSnapshot& state, int elapsed) mutable {
+      hardware::Command command{state.q_d, false};
+      t_s += 1e-3 * elapsed;
+      if (t_s == 0) start = state.q_d;
+      command.values = start;
+      command.values[0] += 0.1 * (1 - std::cos(M_PI * std::min(t_s, 2.0)));
+      command.finished = t_s > 2.3;
+      return command;
+    };
+    driver->Control(hardware::CommandKind::kPositions, swing);
+  }
+  server.join();
+  EXPECT_EQ(finished.exit_code, 0) << finished.err;
+  EXPECT_THAT(finished.out, HasSubstr("written          " + out + "/trace.h5\n"));
+  const record::Recording recording = record::ReadRecording(out + "/trace.h5");
+  ASSERT_GT(recording.control.size(), 2300u);
+  EXPECT_EQ(recording.truth.size(), recording.control.size() / 10 + 1);
+  double farthest_rad = 0;
+  for (const ControlSample& tick : recording.control) {
+    farthest_rad = std::max(farthest_rad, tick.q(0) - recording.q_start(0));
+    EXPECT_LT((tick.q_command - tick.q).cwiseAbs().maxCoeff(), 0.02);
+  }
+  EXPECT_NEAR(farthest_rad, 0.2, 0.005);
+  EXPECT_FALSE(std::filesystem::exists(out + "/trace.journal"));
 }
 
 }  // namespace

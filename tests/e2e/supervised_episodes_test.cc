@@ -100,7 +100,7 @@ TEST(SupervisedEpisodes, InWhichTheBoxKeepsToItsEnvelopeNeverTouchAMovingArm) {
     } while (!BeginsFarFromTheArm(box));
     const bench::EpisodeResult result = bench::RunEpisode(scenario, robot, make_world);
     ++outcomes[ToString(result.outcome)];
-    for (const SafetyEvent& event : result.safety_events) ++checks[event.check];
+    for (const SafetyEvent& event : result.recording.safety) ++checks[event.check];
     const bool in_motion = IsTouchedInMotion(result.recording);
     touched_in_motion += in_motion ? 1 : 0;
     touched_at_rest += !in_motion && record::FirstTouch(result.recording) ? 1 : 0;

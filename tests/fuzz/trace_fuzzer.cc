@@ -15,6 +15,7 @@
 
 #include "sidestep/core/input_error.h"
 #include "sidestep/record/hdf5_image.h"
+#include "sidestep/record/journal.h"
 #include "sidestep/record/recording_file.h"
 #include "sidestep/record/sealed_file.h"
 #include "sidestep/sim/foreign_model.h"
@@ -24,7 +25,8 @@
 namespace sidestep {
 namespace {
 
-const record::SealedFormat kFormat = {"sidestep trace", 2};
+const record::SealedFormat kFormat = {"sidestep trace", record::kTraceVersion};
+const record::SealedFormat kJournalFormat = {"sidestep journal", record::kTraceVersion};
 
 constexpr const char* kGoodModel = R"(<mujoco model="small"><option timestep="0.001"/>
 <size nconmax="200" njmax="800"/><visual><quality shadowsize="2048"/></visual>
@@ -204,7 +206,7 @@ void ReplaceModel(const record::Hdf5Id& file, FuzzedDataProvider& data) {
   H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, xml.c_str());
 }
 
-std::string FaultyTrace(FuzzedDataProvider& data) {
+std::string FaultyTrace(FuzzedDataProvider& data, const record::SealedFormat& format) {
   static const std::vector<unsigned char> good = GoodPayload();
   static const std::vector<std::string> paths = DatasetsOf(OpenImage(good));
   const record::Hdf5Session session;
@@ -227,7 +229,16 @@ std::string FaultyTrace(FuzzedDataProvider& data) {
         break;
     }
   }
-  return record::SealedBytes(kFormat, ImageOf(file));
+  return record::SealedBytes(format, ImageOf(file));
+}
+
+// A good part, then any.
+void ReadAsJournal(const std::string& bytes) {
+  static const std::string good = record::SealedBytes(kJournalFormat, GoodPayload());
+  const std::string all = good + bytes;
+  const MemoryFile file(reinterpret_cast<const std::uint8_t*>(all.data()), all.size());
+  const record::Recording recording = record::ReadJournal(file.path()).recording;
+  if (recording.control.empty() || record::ToHdf5(recording).empty()) std::abort();
 }
 
 void Read(const std::string& bytes) {
@@ -246,6 +257,11 @@ void Read(const std::string& bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   FuzzedDataProvider data(bytes, size);
   const bool as_it_is = data.ConsumeProbability<float>() > 0.95f;
-  sidestep::Read(as_it_is ? data.ConsumeRemainingBytesAsString() : sidestep::FaultyTrace(data));
+  const bool is_journal = data.ConsumeBool();
+  const std::string input =
+      as_it_is
+          ? data.ConsumeRemainingBytesAsString()
+          : sidestep::FaultyTrace(data, is_journal ? sidestep::kJournalFormat : sidestep::kFormat);
+  is_journal ? sidestep::ReadAsJournal(input) : sidestep::Read(input);
   return 0;
 }

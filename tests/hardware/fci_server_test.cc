@@ -109,6 +109,16 @@ TEST(FciServer, KnowsWhereTheHandIs) {
 }
 
 // Thirty seconds of the robot's time take little of ours, and nothing is lost.
+TEST(FciServer, FeelsTheArmsWeightBeforeItHasMoved) {
+  const ServedPanda panda;
+  RawFciDriver driver(panda.address());
+  const Joints before = driver.ReadOnce().tau_J;
+  driver.Control(CommandKind::kPositions, Swing(0, 20));  // stays where it is
+  const Joints after = driver.ReadOnce().tau_J;
+  EXPECT_GT(std::abs(before[3]), 5);
+  for (std::size_t i = 0; i < before.size(); ++i) EXPECT_NEAR(before[i], after[i], 0.01);
+}
+
 TEST(FciServer, LosesNothingInThirtySeconds) {
   const ServedPanda panda;
   RawFciDriver driver(panda.address());

@@ -69,6 +69,22 @@ TEST(Questions, ATouchIsRecentForAsLongAsTheWindowIs) {
   EXPECT_FALSE(TouchWithin(recording, EpisodeTime(1.36), window));
 }
 
+TEST(Questions, OfWhatTheSupervisorFoundTheGravestCounts) {
+  Recording recording;
+  recording.safety = {{EpisodeTime(1.0), "splice", "refuse", 1, 0},
+                      {EpisodeTime(1.1), "stop_path", "hold", 1, 0},
+                      {EpisodeTime(1.2), "clearance", "hold", 1, 0},
+                      {EpisodeTime(1.3), "link", "none", 1, 0}};
+  const HorizonOffset window(0.25);
+  EXPECT_FALSE(FindingWithin(recording, EpisodeTime(0.99), window));
+  EXPECT_EQ(FindingWithin(recording, EpisodeTime(1.05), window)->check, "splice");
+  EXPECT_EQ(FindingWithin(recording, EpisodeTime(1.32), window)->check, "clearance");
+  EXPECT_EQ(FindingWithin(recording, EpisodeTime(1.5), window)->check, "link");
+  EXPECT_FALSE(FindingWithin(recording, EpisodeTime(1.6), window));
+  EXPECT_EQ(*FirstStop(recording), EpisodeTime(1.1));
+  EXPECT_FALSE(FirstStop(Recording()));
+}
+
 TEST(Questions, ATouchWithoutATimeHappenedAtItsSample) {
   Recording recording;
   TruthSample sample;

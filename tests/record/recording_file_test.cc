@@ -28,7 +28,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-const SealedFormat kFormat = {"sidestep trace", 2};
+const SealedFormat kFormat = {"sidestep trace", 3};
 constexpr std::size_t kHeadBytes = 512;
 
 // A folder of its own for each test, gone afterwards.
@@ -75,6 +75,13 @@ void ExpectEqual(const ControlSample& a, const ControlSample& b) {
   EXPECT_EQ(a.q, b.q);
   EXPECT_EQ(a.v, b.v);
   EXPECT_EQ(a.torque, b.torque);
+}
+
+void ExpectEqual(const MotionLimits& a, const MotionLimits& b) {
+  EXPECT_EQ(a.v_max, b.v_max);
+  EXPECT_EQ(a.a_max, b.a_max);
+  EXPECT_EQ(a.jerk_max, b.jerk_max);
+  EXPECT_EQ(a.torque_rate_max, b.torque_rate_max);
 }
 
 void ExpectEqual(const TruthSample& a, const TruthSample& b) {
@@ -134,6 +141,14 @@ void ExpectEqual(const TrackEvent& a, const TrackEvent& b) {
   EXPECT_EQ(a.p_W, b.p_W);
 }
 
+void ExpectEqual(const SafetyEvent& a, const SafetyEvent& b) {
+  EXPECT_EQ(a.t, b.t);
+  EXPECT_EQ(a.check, b.check);
+  EXPECT_EQ(a.reaction, b.reaction);
+  EXPECT_EQ(a.value, b.value);
+  EXPECT_EQ(a.limit, b.limit);
+}
+
 template <typename T>
 void ExpectEqual(const std::vector<T>& a, const std::vector<T>& b) {
   ASSERT_EQ(a.size(), b.size());
@@ -149,15 +164,16 @@ void ExpectEqual(const Recording& a, const Recording& b) {
   EXPECT_EQ(a.q_start, b.q_start);
   EXPECT_EQ(a.q_goal, b.q_goal);
   EXPECT_EQ(a.dwell_s, b.dwell_s);
-  EXPECT_EQ(a.v_max, b.v_max);
-  EXPECT_EQ(a.limits.v_max, b.limits.v_max);
-  EXPECT_EQ(a.limits.a_max, b.limits.a_max);
-  EXPECT_EQ(a.limits.jerk_max, b.limits.jerk_max);
-  EXPECT_EQ(a.limits.torque_rate_max, b.limits.torque_rate_max);
+  ExpectEqual(a.robot_limits, b.robot_limits);
+  ExpectEqual(a.limits, b.limits);
+  EXPECT_EQ(a.tool_a_max, b.tool_a_max);
+  EXPECT_EQ(a.tool_a_reflex, b.tool_a_reflex);
+  EXPECT_EQ(a.p_WTool, b.p_WTool);
   ExpectEqual(a.control, b.control);
   ExpectEqual(a.truth, b.truth);
   ExpectEqual(a.cycles, b.cycles);
   ExpectEqual(a.events, b.events);
+  ExpectEqual(a.safety, b.safety);
   ExpectEqual(a.observations, b.observations);
   ASSERT_EQ(a.metrics.size(), b.metrics.size());
   for (const auto& [name, value] : a.metrics) ExpectEqual(value, b.metrics.at(name));
@@ -228,9 +244,10 @@ TEST_F(RecordingFile, SaysWhyAFileCannotBeWrittenAndLeavesNothingBehind) {
 TEST_F(RecordingFile, RefusesToWriteARecordingThatDisagreesWithItself) {
   const std::function<void(Recording&)> faults[] = {
       [](Recording& r) { r.q_start.resize(3); },
-      [](Recording& r) { r.v_max.resize(0); },
+      [](Recording& r) { r.robot_limits.v_max.resize(0); },
       [](Recording& r) { r.limits.jerk_max.resize(1); },
       [](Recording& r) { r.control[7].torque.resize(1); },
+      [](Recording& r) { r.p_WTool.pop_back(); },
       [](Recording& r) { r.control[7].t = r.control[8].t; },
       [](Recording& r) { r.truth[1].X_WO.pop_back(); },
       [](Recording& r) { r.cycles[0].plan.v.resize(2, 1); },
@@ -256,10 +273,10 @@ TEST_F(RecordingFile, SaysWhatIsWrongWithAFileThatIsNone) {
 }
 
 TEST_F(RecordingFile, NamesTheVersionItCannotRead) {
-  WriteSealedFile(Path("new.h5"), {"sidestep trace", 3}, {});
+  WriteSealedFile(Path("new.h5"), {"sidestep trace", 4}, {});
   EXPECT_EQ(Refusal(Path("new.h5")),
             Path("new.h5") +
-                ": is of version 3 of the sidestep trace format; this program reads version 2");
+                ": is of version 4 of the sidestep trace format; this program reads version 3");
 }
 
 TEST_F(RecordingFile, IsRefusedWhereverItIsCut) {
@@ -284,8 +301,9 @@ TEST_F(RecordingFile, IsRefusedWhereverItIsCut) {
 Recording SmallRecording() {
   Recording small;
   small.joints = {"hinge"};
-  small.q_start = small.q_goal = small.v_max = Eigen::VectorXd::Ones(1);
-  small.limits = {small.v_max, small.v_max, small.v_max, small.v_max};
+  const Eigen::VectorXd one = Eigen::VectorXd::Ones(1);
+  small.q_start = small.q_goal = one;
+  small.limits = small.robot_limits = {one, one, one, one};
   return small;
 }
 
@@ -412,6 +430,16 @@ INSTANTIATE_TEST_SUITE_P(
               {8},
               {0, 1.5, 1.5, 0, 0.75, 1.5, 2.25, 3},
               "plans: cycle 0: trajectory: times must increase strictly"},
+        Fault{"ToolOfOtherTicks",
+              "tool/position",
+              {1, 3},
+              {1, 2, 3},
+              "tool/position: must have one row a control tick, or none"},
+        Fault{"FindingWithoutALimit",
+              "safety/limit",
+              {1},
+              {0.3},
+              "safety/limit: has shape 1, expected shape 2"},
         Fault{"ArrivalMissing",
               "observations/t_arrival",
               {},

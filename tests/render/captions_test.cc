@@ -78,9 +78,48 @@ TEST(Captions, OfAnAbortedRunSaySoAtItsEnd) {
 TEST(Captions, DoNotPraiseAGoalWhereNobodyJudgedContact) {
   record::Recording recording = MakeSampleRecording({});
   recording.truth.clear();
+  recording.header["outcome"] = "unjudged";
+  EXPECT_EQ(StatusAt(recording, EpisodeTime(1.0)).text, "contact unjudged");
   EXPECT_EQ(StatusAt(recording, EpisodeTime(1.95)).text,
             "goal reached at 1.90 s, contact unjudged");
   EXPECT_EQ(StatusAt(recording, EpisodeTime(1.95)).mood, Mood::kNeutral);
+}
+
+TEST(Captions, DoNotHideThatTimeRanOutWhereNobodyJudgedContact) {
+  record::Recording recording = MakeSampleRecording({});
+  recording.truth.clear();
+  recording.metrics["time_to_goal_s"] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(StatusAt(recording, EpisodeTime(2.0)).text, "goal not reached, contact unjudged");
+  EXPECT_EQ(StatusAt(recording, EpisodeTime(2.0)).mood, Mood::kNear);
+}
+
+TEST(Captions, TellForASecondWhatTheSupervisorDid) {
+  record::Recording recording = MakeSampleRecording({});
+  recording.safety = {{EpisodeTime(0.2), "splice", "refuse", 0.1, 0.01},
+                      {EpisodeTime(0.3), "stop_path", "hold", -0.01, 0},
+                      {EpisodeTime(0.4), "clearance", "none", 0.02, 0.05}};
+  const auto at = [&](double t_s) { return StatusAt(recording, EpisodeTime(t_s)); };
+  const std::string none = StatusAt(MakeSampleRecording({}), EpisodeTime(0.1)).text;
+  EXPECT_EQ(at(0.1).text, none);
+  EXPECT_EQ(at(0.25).text.find("supervisor refuses a plan: splice; clearance "), 0u);
+  EXPECT_EQ(at(0.25).mood, Mood::kNeutral);
+  EXPECT_EQ(at(1.2).text.find("supervisor HOLDS: stop path; clearance "), 0u);
+  EXPECT_EQ(at(1.2).mood, Mood::kNear);
+  EXPECT_EQ(at(1.35).text.find("supervisor notes: clearance; clearance "), 0u);
+  EXPECT_EQ(at(1.41).text.find("clearance "), 0u);
+  recording.safety.push_back({EpisodeTime(1.9), "tracking", "brake", 0.03, 0.02});
+  recording.header["outcome"] = "aborted";
+  EXPECT_EQ(at(2.0).text, "supervisor BRAKES: tracking; ABORTED at 2.00 s");
+  EXPECT_EQ(at(2.0).mood, Mood::kBad);
+}
+
+TEST(Captions, SayWhereTheRobotWasOnHardware) {
+  record::Recording recording = MakeSampleRecording({});
+  EXPECT_EQ(PlaceOf(recording), "");
+  recording.header["robot_at"] = "172.16.0.2";
+  EXPECT_EQ(PlaceOf(recording), "robot at 172.16.0.2, obstacles virtual");
+  recording.obstacles.clear();
+  EXPECT_EQ(PlaceOf(recording), "robot at 172.16.0.2");
 }
 
 TEST(Captions, AreSilentAboutWhatWasNotRecorded) {

@@ -73,8 +73,8 @@ record::Recording MakeSampleRecording(const SampleEpisode& episode) {
   recording.obstacles = {"trolley"};
   recording.q_start = JointsOfSample(0);
   recording.q_goal = JointsOfSample(1);
-  recording.v_max = Eigen::Vector3d(2, 2, 2);
-  recording.limits = {recording.v_max, recording.v_max, recording.v_max, recording.v_max};
+  const Eigen::Vector3d limit(2, 2, 2);
+  recording.limits = recording.robot_limits = {limit, limit, limit, limit};
   const int num_control = static_cast<int>(std::lround(1000 * episode.duration_s));
   for (int i = 0; i <= num_control; ++i) {
     ControlSample sample;

@@ -22,6 +22,7 @@ TEST(RobotPage, TellsEveryKeyAsTheReaderHasIt) {
       limits << one.q_min << " " << one.q_max << " " << one.v_max << " " << one.a_max << " "
              << one.jerk_max << " " << one.torque_max << "\n";
     }
+    limits << robot.tool_limits().a_max << " " << robot.tool_limits().a_reflex << "\n";
     return limits.str();
   };
   for (const std::string& difference :

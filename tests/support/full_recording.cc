@@ -24,7 +24,9 @@ record::Recording FullRecording(int num_control) {
   recording.q_start = Eigen::Vector2d(0.1, -0.2);
   recording.q_goal = Eigen::Vector2d(1.0 / 3, std::nextafter(1.0, 2.0));
   recording.dwell_s = 0.25;
-  recording.v_max = Eigen::Vector2d(2.175, 2.61);
+  recording.robot_limits = {Eigen::Vector2d(2.175, 2.61), Eigen::Vector2d(15, 7.5),
+                            Eigen::Vector2d(7501, 3750), Eigen::Vector2d(1001, 901)};
+  recording.tool_a_max = 13;
   recording.limits = {Eigen::Vector2d(2.1, 2.6), Eigen::Vector2d(7.5, 3.75),
                       Eigen::Vector2d(7500, std::numeric_limits<double>::infinity()),
                       Eigen::Vector2d(1000, 900)};
@@ -38,6 +40,7 @@ record::Recording FullRecording(int num_control) {
     sample.v = Eigen::Vector2d(i + 0.3, -0.0);
     sample.torque = Eigen::Vector2d(i + 0.4, 1e300);
     recording.control.push_back(sample);
+    recording.p_WTool.push_back({std::sin(i), 0.1 * i, -1.0 / (i + 1)});
   }
   for (int i = 0; i < 3; ++i) {
     TruthSample sample;
@@ -86,6 +89,8 @@ record::Recording FullRecording(int num_control) {
   }
   recording.events = {{EpisodeTime(0.1), "appeared", 1, 0, {0.4, 2, 0.6}},
                       {EpisodeTime(0.3), "merged", 2, 1, {0.5, 1, 0.7}}};
+  recording.safety = {{EpisodeTime(0.05), "perception_stale", "hold", 0.31, 0.3},
+                      {EpisodeTime(0.2), "stop_path", "brake", -0.01, 0}};
   for (int i = 0; i < 3; ++i) {
     record::ObservationRecord observation;
     observation.t = EpisodeTime(0.1 * i);
