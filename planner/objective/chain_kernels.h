@@ -20,11 +20,12 @@ bool Solve(const Chain& chain, const double* panels, const double* damping, doub
            double* inverse, double* rhs);
 
 /// A quadratic in one configuration of an interval, whose position is the sum of `weights` times
-/// (q, v, q, v) of the two states around it: what ObstacleQuadratics holds.
+/// (q, v, q, v) of the two states around it, or that of the second: what ObstacleQuadratics holds.
 struct BetweenStates {
   const double* gradient = nullptr;
   const double* hessian = nullptr;
   std::array<double, 4> weights{};
+  bool is_end = false;  ///< weights (0, 0, 1, 0)
 };
 
 /// Where the halves of an interval's quadratic go: the panels and gradients of the two states; null
