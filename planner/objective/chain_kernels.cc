@@ -146,6 +146,27 @@ bool SolveChain(const Chain& chain, const double* panels, const double* damping,
   return SolveOfSizes(chain, chain.num_blocks, panels, damping, factor, inverse, rhs);
 }
 
+void FactorSemidefiniteColumns(int size, int height, double* columns) {
+  const D d;
+  constexpr double kDependent = 1e-11;
+  for (int j = 0; j < size; ++j) {
+    double* const column = columns + j * height;
+    // What has been taken off the diagonal is the square of what stands above.
+    double taken = 0;
+    for (int i = 0; i < j; ++i) taken += columns[i * height + j] * columns[i * height + j];
+    const double pivot = column[j];
+    for (int row = 0; row < j; ++row) column[row] = 0;
+    const bool is_dependent = !(pivot > kDependent * (pivot + taken));
+    const V scale = hn::Set(d, is_dependent ? 0 : 1 / std::sqrt(pivot));
+    for (int row = FirstRowOfVector(j); row < height; row += kLanes) {
+      hn::Store(hn::Mul(hn::Load(d, column + row), scale), d, column + row);
+    }
+    for (int k = j + 1; !is_dependent && k < size; ++k) {
+      Subtract(column, column[k], FirstRowOfVector(k), height, columns + k * height);
+    }
+  }
+}
+
 // Pairs (a, b) of (q, v, q, v) with a >= b, row by row.
 constexpr int kPairs = 10;
 
@@ -224,6 +245,7 @@ namespace sidestep::planner::chain_kernels {
 
 HWY_EXPORT(SolveChain);
 HWY_EXPORT(AddBetweenStates);
+HWY_EXPORT(FactorSemidefiniteColumns);
 
 bool Solve(const Chain& chain, const double* panels, const double* damping, double* factor,
            double* inverse, double* rhs) {
@@ -233,6 +255,10 @@ bool Solve(const Chain& chain, const double* panels, const double* damping, doub
 void AddBetween(int num_joints, int stride, std::span<const BetweenStates> between,
                 const IntervalTarget& target) {
   HWY_DYNAMIC_DISPATCH(AddBetweenStates)(num_joints, stride, between, target);
+}
+
+void FactorSemidefinite(int size, int height, double* columns) {
+  HWY_DYNAMIC_DISPATCH(FactorSemidefiniteColumns)(size, height, columns);
 }
 
 }  // namespace sidestep::planner::chain_kernels

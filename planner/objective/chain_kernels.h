@@ -42,4 +42,10 @@ struct IntervalTarget {
 void AddBetween(int num_joints, int stride, std::span<const BetweenStates> between,
                 const IntervalTarget& target);
 
+/// The Cholesky factor R^T of a symmetric positive semidefinite matrix, in place: `size` columns,
+/// each at a multiple of `height` numbers, a multiple of 8 that has room for one; of the matrix the
+/// lower triangle counts. A column whose pivot is no more than rounding (1e-11 of what stood on the
+/// diagonal) depends on those before it, and becomes zero. Above the diagonal zeros are left.
+void FactorSemidefinite(int size, int height, double* columns);
+
 }  // namespace sidestep::planner::chain_kernels
