@@ -41,13 +41,31 @@ class Moments {
   void Configuration(int i, Eigen::Ref<Eigen::VectorXd> q) {
     SampleInto(trajectory_, Time(i) - start_, q, v_, a_);
   }
+  /// The same to rounding and sooner, for i that do not fall.
+  void NearlyConfiguration(int i, Eigen::Ref<Eigen::VectorXd> q) {
+    const double t = (Time(i) - start_).seconds();
+    const Eigen::VectorXd& t_s = trajectory_.t_s;
+    const Eigen::Index last = t_s.size() - 1;
+    while (interval_ < last && t >= t_s(interval_ + 1)) ++interval_;
+    if (t < t_s(0) || interval_ == last) {
+      q = trajectory_.q.col(interval_);
+      return;
+    }
+    const double h = t_s(interval_ + 1) - t_s(interval_);
+    const double s = (t - t_s(interval_)) / h, s2 = s * s, s3 = s2 * s;
+    q = (1 - 3 * s2 + 2 * s3) * trajectory_.q.col(interval_) +
+        h * (s - 2 * s2 + s3) * trajectory_.v.col(interval_) +
+        (3 * s2 - 2 * s3) * trajectory_.q.col(interval_ + 1) +
+        h * (s3 - s2) * trajectory_.v.col(interval_ + 1);
+  }
 
  private:
   const Trajectory& trajectory_;
   EpisodeTime start_, from_;
   double step_s_, duration_s_;
   int count_;
-  Eigen::VectorXd v_, a_;  // of no interest
+  Eigen::VectorXd v_, a_;      // of no interest
+  Eigen::Index interval_ = 0;  // of the last NearlyConfiguration
 };
 
 // The least clearance at one moment, as it is told.
@@ -106,7 +124,7 @@ Clearance MeasureClearance(const robot::RobotModel& robot, const sdf::DistanceFi
   bool is_sure = true;
   for (int begin = 0; begin < moments.count(); begin += ArmGroup::kSize) {
     const int size = std::min(ArmGroup::kSize, moments.count() - begin);
-    for (int c = 0; c < size; ++c) moments.Configuration(begin + c, q.col(c));
+    for (int c = 0; c < size; ++c) moments.NearlyConfiguration(begin + c, q.col(c));
     is_sure = is_sure && q.leftCols(size).cwiseAbs().maxCoeff() < kMostTurn_rad;
     group.Place(q.leftCols(size));
     for (int c = 0; c < size; ++c) {

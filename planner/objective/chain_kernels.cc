@@ -1,6 +1,6 @@
 #include "sidestep/planner/objective/chain_kernels.h"
 
-#include <cmath>
+#include "sidestep/robot/robot_model.h"
 
 // Highway compiles what follows once for each instruction set, each time in a namespace of its own;
 // the end of the file picks one of them at run time.
@@ -49,52 +49,90 @@ double DotProduct(const double* a, const double* b, int size) {
          ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]));
 }
 
-// One block column, from `panel` into `L`, less what the column before takes off it.
-void CopyPanel(const Chain& chain, const double* panel, const double* L_before, double* L) {
+constexpr int kMaxBlockSize = 2 * robot::RobotModel::kMaxJoints;
+
+// The sizes of most arms, known to the compiler.
+struct SevenJoints {
+  static constexpr int block_size = 14, stride = 16;
+};
+
+// The matrix is C diag(inverse) C^T with a lower triangular C that has the pivots on its diagonal:
+// no roots, and one division a column in the chain of what waits for what.
+
+// One block column, from `panel` into `C`, less what the column before takes off it.
+template <class Sizes>
+void CopyPanel(const Sizes& chain, const double* panel, const double* C_before,
+               const double* inverse_before, double* C) {
   const D d;
   const int height = 2 * chain.stride;
   for (int j = 0; j < chain.block_size; ++j) {
+    double factors[kMaxBlockSize];
+    for (int i = 0; C_before != nullptr && i < chain.block_size; ++i) {
+      factors[i] = C_before[i * height + chain.stride + j] * inverse_before[i];
+    }
     for (int row = FirstRowOfVector(j); row < chain.stride; row += kLanes) {
       V value = hn::Load(d, panel + j * height + row);
-      if (L_before != nullptr) {
-        const double* X = L_before + chain.stride;
+      if (C_before != nullptr) {
+        const double* X = C_before + chain.stride + row;
         for (int i = 0; i < chain.block_size; ++i, X += height) {
-          value = hn::Sub(value, hn::Mul(hn::Load(d, X + row), hn::Set(d, X[j])));
+          value = hn::Sub(value, hn::Mul(hn::Load(d, X), hn::Set(d, factors[i])));
         }
       }
-      hn::Store(value, d, L + j * height + row);
+      hn::Store(value, d, C + j * height + row);
     }
     for (int row = chain.stride; row < height; row += kLanes) {
-      hn::Store(hn::Load(d, panel + j * height + row), d, L + j * height + row);
+      hn::Store(hn::Load(d, panel + j * height + row), d, C + j * height + row);
     }
   }
 }
 
-// Factors one block column in place, and with it the right-hand side of its rows.
-bool FactorPanel(const Chain& chain, const double* damping, double* L, double* inverse,
+// Factors one block column in place, and solves the rows of the right-hand side that are its own;
+// the next block's are rid of what it takes off them.
+template <class Sizes>
+bool FactorPanel(const Sizes& chain, const double* damping, double* C, double* inverse,
                  double* rhs) {
   const D d;
   const int height = 2 * chain.stride;
   for (int j = 0; j < chain.block_size; ++j) {
-    double* const column = L + j * height;
+    double* const column = C + j * height;
     const double pivot = column[j] + damping[j];
     if (!(pivot > 0)) return false;
-    inverse[j] = 1 / std::sqrt(pivot);
-    const V scale = hn::Set(d, inverse[j]);
-    for (int row = FirstRowOfVector(j); row < height; row += kLanes) {
-      hn::Store(hn::Mul(hn::Load(d, column + row), scale), d, column + row);
+    inverse[j] = 1 / pivot;
+    for (int k = j + 1; k < chain.block_size; ++k) {
+      Subtract(column, column[k] * inverse[j], FirstRowOfVector(k), height, C + k * height);
     }
-    const double y = rhs[j] * inverse[j];
     // Of the vector that row j lies in, what is solved stays as it is.
+    const double factor = rhs[j] * inverse[j];
     const int first = FirstRowOfVector(j);
     const auto below_j = hn::Not(hn::FirstN(d, static_cast<std::size_t>(j - first + 1)));
-    const V taken = hn::Mul(hn::Load(d, column + first), hn::Set(d, y));
+    const V taken = hn::Mul(hn::Load(d, column + first), hn::Set(d, factor));
     hn::Store(hn::Sub(hn::Load(d, rhs + first), hn::IfThenElseZero(below_j, taken)), d,
               rhs + first);
-    Subtract(column, y, first + kLanes, height, rhs);
-    rhs[j] = y;
-    for (int k = j + 1; k < chain.block_size; ++k) {
-      Subtract(column, column[k], FirstRowOfVector(k), height, L + k * height);
+    Subtract(column, factor, first + kLanes, height, rhs);
+  }
+  return true;
+}
+
+template <class Sizes>
+bool SolveOfSizes(const Sizes& chain, int num_blocks, const double* panels, const double* damping,
+                  double* factor, double* inverse, double* rhs) {
+  const int height = 2 * chain.stride, panel_size = chain.block_size * height;
+  for (int k = 0; k < num_blocks; ++k) {
+    double* const C = factor + k * panel_size;
+    const int at = k * chain.stride;
+    CopyPanel(chain, panels + k * panel_size, k > 0 ? C - panel_size : nullptr,
+              k > 0 ? inverse + at - chain.stride : nullptr, C);
+    if (!FactorPanel(chain, damping + at, C, inverse + at, rhs + at)) return false;
+  }
+  for (int k = num_blocks - 1; k >= 0; --k) {
+    const double* const C = factor + k * panel_size;
+    double* const x = rhs + k * chain.stride;
+    for (int j = 0; k + 1 < num_blocks && j < chain.block_size; ++j) {
+      x[j] -= DotProduct(C + j * height + chain.stride, x + chain.stride, chain.stride);
+    }
+    for (int j = chain.block_size - 1; j >= 0; --j) {
+      x[j] *= inverse[k * chain.stride + j];
+      for (int i = 0; i < j; ++i) x[i] -= C[i * height + j] * x[j];
     }
   }
   return true;
@@ -102,27 +140,31 @@ bool FactorPanel(const Chain& chain, const double* damping, double* L, double* i
 
 bool SolveChain(const Chain& chain, const double* panels, const double* damping, double* factor,
                 double* inverse, double* rhs) {
-  const int height = 2 * chain.stride, panel_size = chain.block_size * height;
-  for (int k = 0; k < chain.num_blocks; ++k) {
-    double* const L = factor + k * panel_size;
-    const int at = k * chain.stride;
-    // A right-hand side's rows of the blocks before are solved; those after it get what this block
-    // takes off them.
-    CopyPanel(chain, panels + k * panel_size, k > 0 ? L - panel_size : nullptr, L);
-    if (!FactorPanel(chain, damping + at, L, inverse + at, rhs + at)) return false;
+  if (chain.block_size == SevenJoints::block_size && chain.stride == SevenJoints::stride) {
+    return SolveOfSizes(SevenJoints(), chain.num_blocks, panels, damping, factor, inverse, rhs);
   }
-  for (int k = chain.num_blocks - 1; k >= 0; --k) {
-    const double* const L = factor + k * panel_size;
-    double* const x = rhs + k * chain.stride;
-    for (int j = chain.block_size - 1; k + 1 < chain.num_blocks && j >= 0; --j) {
-      x[j] -= DotProduct(L + j * height + chain.stride, x + chain.stride, chain.stride);
+  return SolveOfSizes(chain, chain.num_blocks, panels, damping, factor, inverse, rhs);
+}
+
+void FactorSemidefiniteColumns(int size, int height, double* columns) {
+  const D d;
+  constexpr double kDependent = 1e-11;
+  for (int j = 0; j < size; ++j) {
+    double* const column = columns + j * height;
+    // What has been taken off the diagonal is the square of what stands above.
+    double taken = 0;
+    for (int i = 0; i < j; ++i) taken += columns[i * height + j] * columns[i * height + j];
+    const double pivot = column[j];
+    for (int row = 0; row < j; ++row) column[row] = 0;
+    const bool is_dependent = !(pivot > kDependent * (pivot + taken));
+    const V scale = hn::Set(d, is_dependent ? 0 : 1 / std::sqrt(pivot));
+    for (int row = FirstRowOfVector(j); row < height; row += kLanes) {
+      hn::Store(hn::Mul(hn::Load(d, column + row), scale), d, column + row);
     }
-    for (int j = chain.block_size - 1; j >= 0; --j) {
-      x[j] *= inverse[k * chain.stride + j];
-      for (int i = 0; i < j; ++i) x[i] -= L[i * height + j] * x[j];
+    for (int k = j + 1; !is_dependent && k < size; ++k) {
+      Subtract(column, column[k], FirstRowOfVector(k), height, columns + k * height);
     }
   }
-  return true;
 }
 
 // Pairs (a, b) of (q, v, q, v) with a >= b, row by row.
@@ -140,6 +182,10 @@ void AddBetweenStates(int n, int stride, std::span<const BetweenStates> between,
     V sums[4] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
     for (const BetweenStates& one : between) {
       const V gradient = hn::Load(d, one.gradient + row);
+      if (one.is_end) {
+        sums[2] = hn::Add(sums[2], gradient);
+        continue;
+      }
       for (int a = 0; a < 4; ++a) {
         sums[a] = hn::Add(sums[a],
                           hn::Mul(gradient, hn::Set(d, one.weights[static_cast<std::size_t>(a)])));
@@ -159,6 +205,10 @@ void AddBetweenStates(int n, int stride, std::span<const BetweenStates> between,
       for (const BetweenStates& one : between) {
         const V hessian = hn::Load(d, one.hessian + column * rows + row);
         const auto& w = one.weights;
+        if (one.is_end) {
+          sums[5] = hn::Add(sums[5], hessian);
+          continue;
+        }
         const V scaled[4] = {hn::Mul(hessian, hn::Set(d, w[0])), hn::Mul(hessian, hn::Set(d, w[1])),
                              hn::Mul(hessian, hn::Set(d, w[2])),
                              hn::Mul(hessian, hn::Set(d, w[3]))};
@@ -195,6 +245,7 @@ namespace sidestep::planner::chain_kernels {
 
 HWY_EXPORT(SolveChain);
 HWY_EXPORT(AddBetweenStates);
+HWY_EXPORT(FactorSemidefiniteColumns);
 
 bool Solve(const Chain& chain, const double* panels, const double* damping, double* factor,
            double* inverse, double* rhs) {
@@ -204,6 +255,10 @@ bool Solve(const Chain& chain, const double* panels, const double* damping, doub
 void AddBetween(int num_joints, int stride, std::span<const BetweenStates> between,
                 const IntervalTarget& target) {
   HWY_DYNAMIC_DISPATCH(AddBetweenStates)(num_joints, stride, between, target);
+}
+
+void FactorSemidefinite(int size, int height, double* columns) {
+  HWY_DYNAMIC_DISPATCH(FactorSemidefiniteColumns)(size, height, columns);
 }
 
 }  // namespace sidestep::planner::chain_kernels

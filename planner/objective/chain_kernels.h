@@ -20,11 +20,12 @@ bool Solve(const Chain& chain, const double* panels, const double* damping, doub
            double* inverse, double* rhs);
 
 /// A quadratic in one configuration of an interval, whose position is the sum of `weights` times
-/// (q, v, q, v) of the two states around it: what ObstacleQuadratics holds.
+/// (q, v, q, v) of the two states around it, or that of the second: what ObstacleQuadratics holds.
 struct BetweenStates {
   const double* gradient = nullptr;
   const double* hessian = nullptr;
   std::array<double, 4> weights{};
+  bool is_end = false;  ///< weights (0, 0, 1, 0)
 };
 
 /// Where the halves of an interval's quadratic go: the panels and gradients of the two states; null
@@ -40,5 +41,11 @@ struct IntervalTarget {
 /// v), the product of their weights times the configuration's Hessian (a Kronecker product).
 void AddBetween(int num_joints, int stride, std::span<const BetweenStates> between,
                 const IntervalTarget& target);
+
+/// The Cholesky factor R^T of a symmetric positive semidefinite matrix, in place: `size` columns,
+/// each at a multiple of `height` numbers, a multiple of 8 that has room for one; of the matrix the
+/// lower triangle counts. A column whose pivot is no more than rounding (1e-11 of what stood on the
+/// diagonal) depends on those before it, and becomes zero. Above the diagonal zeros are left.
+void FactorSemidefinite(int size, int height, double* columns);
 
 }  // namespace sidestep::planner::chain_kernels

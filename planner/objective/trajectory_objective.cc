@@ -113,7 +113,8 @@ void TrajectoryObjective::AddObstacles(int k, int block, ChainQuadratic& quadrat
     const int index = static_cast<int>(c);
     if (at_places_.cost(index) == 0) continue;
     quadratic.cost.obstacle += at_places_.cost(index);
-    between_.push_back({at_places_.gradient(index), at_places_.hessian(index), places_[c].weights});
+    between_.push_back({at_places_.gradient(index), at_places_.hessian(index), places_[c].weights,
+                        !places_[c].is_between});
   }
   if (between_.empty()) return;
   chain_kernels::IntervalTarget target;

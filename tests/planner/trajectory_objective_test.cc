@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "sidestep/core/random.h"
+#include "sidestep/planner/compressed/compressed_problem.h"
 #include "sidestep/planner/first_guess.h"
 #include "sidestep/planner/gp_problem.h"
 #include "tests/sdf/only_target.h"
@@ -82,6 +83,12 @@ class TrajectoryObjectiveOf : public ::testing::TestWithParam<Case> {
   Normal OfCeres() {
     GpProblem problem(robot_, request_, motion_, options_);
     if (GetParam().limits) problem.AddLimits(Limits());
+    Normal normal = Evaluated(problem);
+    normal.parts = problem.ComputeCost();
+    return normal;
+  }
+  template <class Problem>
+  Normal Evaluated(Problem& problem) {
     Normal normal;
     std::vector<double> gradient;
     ceres::CRSMatrix jacobian;
@@ -98,18 +105,24 @@ class TrajectoryObjectiveOf : public ::testing::TestWithParam<Case> {
     }
     normal.gradient = Eigen::Map<Eigen::VectorXd>(gradient.data(), J.cols());
     normal.hessian = J.transpose() * J;
-    normal.parts = problem.ComputeCost();
     return normal;
   }
 
-  ChainQuadratic Evaluate() {
+  TrajectoryObjective Objective() const {
     TrajectoryObjective objective(robot_, request_, motion_.t_s, options_);
     objective.Restart(motion_);
     if (GetParam().limits) objective.AddLimits(Limits());
+    return objective;
+  }
+  Eigen::MatrixXd States() const {
     Eigen::MatrixXd states(2 * robot_.num_joints(), request_.num_states);
     states << motion_.q, motion_.v;
+    return states;
+  }
+  ChainQuadratic Evaluate() {
+    TrajectoryObjective objective = Objective();
     ChainQuadratic quadratic = objective.MakeQuadratic();
-    objective.Evaluate(states, quadratic);
+    objective.Evaluate(States(), quadratic);
     return quadratic;
   }
 
@@ -134,6 +147,23 @@ TEST_P(TrajectoryObjectiveOf, HasTheCostGradientAndHessianOfCeresProblem) {
   EXPECT_EQ(got.cost.limits > 1, GetParam().limits);
   EXPECT_LT((got.DenseGradient() - expected.gradient).norm(), 1e-11 * expected.gradient.norm());
   EXPECT_LT((got.DenseHessian() - expected.hessian).norm(), 1e-11 * expected.hessian.norm());
+}
+
+TEST_P(TrajectoryObjectiveOf, IsTheSameToCeresInFewAndSmallBlocks) {
+  const Normal expected = OfCeres();
+  TrajectoryObjective objective = Objective();
+  CompressedProblem problem(objective, States());
+  const Normal got = Evaluated(problem);
+  EXPECT_NEAR(got.cost, expected.cost, 1e-11 * expected.cost);
+  EXPECT_LT((got.gradient - expected.gradient).norm(), 1e-9 * expected.gradient.norm());
+  EXPECT_LT((got.hessian - expected.hessian).norm(), 1e-9 * expected.hessian.norm());
+  // Without a Jacobian too.
+  double cost = 0;
+  problem.problem().Evaluate({}, &cost, nullptr, nullptr, nullptr);
+  EXPECT_NEAR(cost, expected.cost, 1e-11 * expected.cost);
+  // 4n + 1 rows for each step, and 2n for each prior.
+  const int n = robot_.num_joints();
+  EXPECT_LE(problem.problem().NumResiduals(), request_.num_states * (4 * n + 1) + 3 * 2 * n);
 }
 
 TEST_P(TrajectoryObjectiveOf, IsSolvedAsByDenseAlgebraAndToTheBitByAnyInstructionSet) {
