@@ -264,7 +264,7 @@ TEST(PlannerRegistry, NamesThePlannersThereAreWhenAskedForAnother) {
   } catch (const std::invalid_argument& error) {
     EXPECT_STREQ(error.what(),
                  "unknown planner 'chomp'; there are: gauss_newton, gpmp, gpmp_ceres, gpmp_fast, "
-                 "hold_still");
+                 "straight_line, hold_still");
   }
 }
 
