@@ -226,6 +226,23 @@ INSTANTIATE_TEST_SUITE_P(
                 {"sensor.camera: is missing; the sensor 'depth_camera' needs it"}}),
     [](const auto& test) { return std::string(test.param.name); });
 
+TEST(Bench, PrintsARowForEachPlannerAndStartAndWritesThem) {
+  const TemporaryFolder folder;
+  const std::string file = folder.path() / "rows.json";
+  const Finished finished =
+      Sidestep({"bench", "planner", "--problems", "hsr", "--planners", "gpmp_fast,straight_line",
+                "--pairs", "2", "--runs", "1", "--json", file});
+  ASSERT_EQ(finished.exit_code, 0) << finished.err;
+  EXPECT_THAT(finished.out, HasSubstr("warm, 2 cm off"));
+  std::ifstream stream(file);
+  const nlohmann::json json = nlohmann::json::parse(stream);
+  ASSERT_EQ(json["rows"].size(), 4u) << "straight motions are hit, so that nothing warm is left";
+  EXPECT_EQ(json["rows"][0]["planner"], "gpmp_fast");
+  EXPECT_EQ(json["rows"][0]["free"], 2);
+  EXPECT_EQ(json["rows"][1]["planner"], "straight_line");
+  EXPECT_EQ(json["rows"][1]["free"], 0);
+}
+
 TEST(Help, NamesEveryCommandAndTheExitCodes) {
   const Finished finished = Sidestep({"--help"});
   EXPECT_EQ(finished.exit_code, 0);
