@@ -32,7 +32,6 @@ namespace sidestep::bench {
 namespace {
 
 constexpr double kAfterGoal = 0.5;     // s of episode after the goal is reached
-constexpr double kHorizons = 2;        // an episode lasts at most this many horizons
 constexpr double kTimeEpsilon = 1e-9;  // s; far below a physics step, far above rounding
 constexpr double kPoll_s = 2e-3;       // on a wall clock, how long nobody looks up
 constexpr double kLongestStop_s = 3;   // an arm that is told to hold rests by then
@@ -102,7 +101,7 @@ class Loop {
         is_real_time_(options.clock != EpisodeClock::kVirtual),
         worker_(is_real_time_ ? MakeThreadWorker() : MakeInlineWorker()),
         recorder_(scenario, robot, world),
-        end_s_(kHorizons * horizon_s_) {
+        end_s_(options.horizons * horizon_s_) {
     if (scenario.safety.profile != scenarios::SafetyProfile::kOff) {
       safety_.emplace(scenario, world);
     }
@@ -309,10 +308,15 @@ class Loop {
     // In real time a cycle that is done early need not wait for its moment.
     if (!is_real_time_) ScheduleCycle(now_s_ + expected.seconds());
     if (!newest_scan_) return;  // nothing is known yet
+    const robot::RobotStatus status = world_.robot->Status();
+    // What it follows is behind its time as far as it has slowed down.
+    replanner_.Delay(HorizonOffset(status.lag.seconds() - lag_.seconds()));
+    lag_ = status.lag;
     // What was submitted a moment ago may be followed from the next tick on.
-    const bool may_go_on = now_s_ - submitted_s_ <= kTick_s;
-    if (!may_go_on && world_.robot->Status().mode == robot::RobotMode::kHolding) {
+    const bool may_go_on = !status.is_held && now_s_ - submitted_s_ <= kTick_s;
+    if (!may_go_on && status.mode == robot::RobotMode::kHolding) {
       // It has left its plan by itself, and begins anew when it rests.
+      world_.robot->Hold();
       pending_.clear();
       replanner_.Forget();
       if (world_.robot->Read().v.cwiseAbs().maxCoeff() > kStill_rad_s) return;
@@ -343,6 +347,7 @@ class Loop {
       // It agrees with what runs until it takes effect, or begins then. On a wall clock, where
       // nobody may be looking at that very moment, the robot has it before.
       pending_.push_back({*cycle->plan, is_real_time_ ? now_s_ : effect_s});
+      pending_.back().plan.start = cycle->plan->start - lag_;
     }
     ScheduleCycle(begun_.t_s + took_s);
     record.objects = model_->DescribeObjects(planner::TimesToDescribe(record));
@@ -402,6 +407,7 @@ class Loop {
 
   std::deque<Pending> pending_;
   Begun begun_ = {};
+  HorizonOffset lag_{0};  // of the robot behind its plans, as the latest cycle knew it
   double now_s_ = 0;
   int cycle_index_ = 0;
   double next_cycle_s_ = 0;

@@ -70,13 +70,15 @@ struct EpisodeOptions {
   EpisodeClock clock = EpisodeClock::kVirtual;
   /// Gets what is recorded as it comes; null: there is none.
   record::Journal* journal = nullptr;
+  double horizons = 2;  ///< it lasts at most this many
 };
 
 /// Runs one closed loop: sense, predict, re-plan, splice, move, until 0.5 s after the goal is
-/// reached or twice the horizon. On virtual time, unless the latency is measured, everything but
-/// `times`, `wall_s` and `cycles_over_charge` is a function of the scenario and the build. A
-/// planning cycle begins at multiples of 1 / replan_rate and takes what bench/latency.h says, or on
-/// a wall clock what it takes; the next one begins at the first multiple after that.
+/// reached or, unless the options say otherwise, twice the horizon. On virtual time, unless the
+/// latency is measured, everything but `times`, `wall_s` and `cycles_over_charge` is a function of
+/// the scenario and the build. A planning cycle begins at multiples of 1 / replan_rate and takes
+/// what bench/latency.h says, or on a wall clock what it takes; the next one begins at the first
+/// multiple after that.
 ///
 /// What is thrown on the way (by the robot, a sensor, the planner, the observer ...) ends the
 /// episode as aborted: what was recorded until then is the result. However it ends, the robot is

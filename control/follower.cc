@@ -8,6 +8,7 @@ namespace sidestep::control {
 namespace {
 
 constexpr std::size_t kLogLength = 4096;  // ticks: 4 s
+constexpr double kQuickening_per_s = 4;   // from full speed to rest in a quarter of a second
 
 TrackerLimits LimitsUnder(const SafetySettings& safety, const robot::RobotModel& robot,
                           const TrackerLimits& limits) {
@@ -16,15 +17,6 @@ TrackerLimits LimitsUnder(const SafetySettings& safety, const robot::RobotModel&
   lab.q_min.array() += safety.range_margin_rad;
   lab.q_max.array() -= safety.range_margin_rad;
   return lab;
-}
-
-JointPoint PointOf(const PlanSlot::Plan& plan, EpisodeTime t) {
-  // A start a rounding error after this tick is this tick, not a moment before the motion.
-  const HorizonOffset offset = std::max(t - plan.start, HorizonOffset(0));
-  const Eigen::Index n = plan.trajectory.num_joints();
-  JointPoint point = {JointVector(n), JointVector(n), JointVector(n)};
-  SampleInto(plan.trajectory, offset, point.q, point.v, point.a);
-  return point;
 }
 
 }  // namespace
@@ -54,14 +46,37 @@ void Follower::Rearm() {
   if (supervisor_) supervisor_->Rearm();
 }
 
-const PlanSlot::Plan* Follower::PlanFor(const Measured& measured, HorizonOffset period) noexcept {
-  const PlanSlot::Plan* const plan = plans_.PlanAt(measured.t);
+JointPoint Follower::PointOf(const PlanSlot::Plan& plan, const Progress& progress) {
+  // A start a rounding error after this tick is this tick, not a moment before the motion.
+  const HorizonOffset offset = std::max(progress.t - plan.start, HorizonOffset(0));
+  const Eigen::Index n = plan.trajectory.num_joints();
+  JointPoint point = {JointVector(n), JointVector(n), JointVector(n)};
+  SampleInto(plan.trajectory, offset, point.q, point.v, point.a);
+  if (progress.pace != 1 || progress.quickening != 0) {
+    point.a = progress.pace * progress.pace * point.a + progress.quickening * point.v;
+    point.v *= progress.pace;
+  }
+  return point;
+}
+
+Follower::Progress Follower::Go(EpisodeTime t, double period_s) noexcept {
+  const double wanted = supervisor_ ? supervisor_->pace() : 1, most = kQuickening_per_s * period_s;
+  const double change = std::clamp(wanted - progress_.pace, -most, most);
+  const double pace = progress_.pace + change;
+  const double lost_s = target_ ? (1 - pace) * period_s : 0;  // by what is followed
+  const double lag_s = lag_s_.load(std::memory_order_relaxed) + lost_s;
+  lag_s_.store(lag_s, std::memory_order_relaxed);
+  return {t - HorizonOffset(lag_s), pace, change / period_s};
+}
+
+const PlanSlot::Plan* Follower::PlanFor(const Measured& measured, const Progress& before,
+                                        const Progress& now) noexcept {
+  const PlanSlot::Plan* const plan = plans_.PlanAt(now.t);
   if (plan == nullptr) return nullptr;
   if (supervisor_ && plan->number > judged_) {
     judged_ = plan->number;
-    const EpisodeTime before = measured.t - period;
     const JointPoint* const other = target_ ? &*target_ : nullptr;
-    if (supervisor_->Refuses(PointOf(*plan, before), before < plan->start, other, measured)) {
+    if (supervisor_->Refuses(PointOf(*plan, before), before.t < plan->start, other, measured)) {
       dropped_ = plan->number;
     }
   }
@@ -70,10 +85,13 @@ const PlanSlot::Plan* Follower::PlanFor(const Measured& measured, HorizonOffset 
 
 Command Follower::Tick(const Measured& measured, HorizonOffset period) noexcept {
   const double period_s = period.seconds();
-  const PlanSlot::Plan* const plan = PlanFor(measured, period);
+  Progress before = progress_;
+  before.t = measured.t - period - lag();
+  progress_ = Go(measured.t, period_s);
+  const PlanSlot::Plan* const plan = PlanFor(measured, before, progress_);
   const auto brake = [&] { return tracker_.Brake(measured.commanded, period_s); };
   target_.reset();
-  if (plan != nullptr) target_ = PointOf(*plan, measured.t);
+  if (plan != nullptr) target_ = PointOf(*plan, progress_);
   Command command;
   command.motion = target_ ? tracker_.Step(measured.commanded, *target_, period_s) : brake();
 
@@ -96,6 +114,7 @@ Command Follower::Tick(const Measured& measured, HorizonOffset period) noexcept 
     mode = robot::RobotMode::kHolding;
   }
   mode_.store(mode, std::memory_order_relaxed);
+  is_held_.store(reaction != Reaction::kNone, std::memory_order_relaxed);
   log_.Append({measured.t, measured.q, measured.v, measured.torque, command.motion});
   return command;
 }

@@ -53,8 +53,13 @@ class Follower {
   /// Forgets what was submitted: brakes within the limits, and stays until something new begins.
   void Hold() noexcept { plans_.Recall(); }
 
-  /// As of the latest tick; to be asked from any thread.
+  // As of the latest tick; to be asked from any thread.
   robot::RobotMode mode() const { return mode_.load(std::memory_order_relaxed); }
+  /// Whether its supervisor keeps it from following anything.
+  bool is_held() const { return is_held_.load(std::memory_order_relaxed); }
+  /// By how much plans are followed late, for having been followed more slowly than planned. What
+  /// begins at `start` is begun that much later.
+  HorizonOffset lag() const { return HorizonOffset(lag_s_.load(std::memory_order_relaxed)); }
 
   /// The command for the tick that begins at measured.t and lasts `period`: towards the plan, or to
   /// rest where there is none, within the limits (control/tracker.h).
@@ -74,19 +79,31 @@ class Follower {
   std::size_t lost_ticks() const { return log_.lost(); }
 
  private:
-  // The plan to follow at measured.t, unless it is refused or from before a stop.
-  const PlanSlot::Plan* PlanFor(const Measured& measured, HorizonOffset period) noexcept;
+  // How far a plan has been followed, and how quickly.
+  struct Progress {
+    EpisodeTime t;          // on the plans' own clock, which is late by the lag
+    double pace = 1;        // of that clock
+    double quickening = 0;  // [1/s] its rate of change
+  };
+  static JointPoint PointOf(const PlanSlot::Plan& plan, const Progress& progress);
+  Progress Go(EpisodeTime t, double period_s) noexcept;
+  // The plan to follow there, unless it is refused or from before a stop.
+  const PlanSlot::Plan* PlanFor(const Measured& measured, const Progress& before,
+                                const Progress& now) noexcept;
 
   JerkLimitedTracker tracker_;
   std::optional<Supervisor> supervisor_;
   PlanSlot plans_;
   std::atomic<robot::RobotMode> mode_{robot::RobotMode::kReady};
+  std::atomic<bool> is_held_{false};
+  std::atomic<double> lag_s_{0};
   RingLog<TickRecord> log_;
 
   // Of the thread that ticks: numbers of plans.
   std::uint64_t judged_ = 0;          // by the supervisor, the latest
   std::optional<JointPoint> target_;  // of the tick before, if a plan was followed
   std::uint64_t dropped_ = 0;         // neither that one nor those before it are followed any more
+  Progress progress_;                 // at the latest tick
 };
 
 }  // namespace sidestep::control

@@ -55,6 +55,8 @@ const char* ToString(Reaction reaction) {
   switch (reaction) {
     case Reaction::kNone:
       return "none";
+    case Reaction::kSlow:
+      return "slow";
     case Reaction::kRefuse:
       return "refuse";
     case Reaction::kHold:

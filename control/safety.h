@@ -42,12 +42,13 @@ const char* ToString(SafetyCheck check);
 
 enum class Reaction {
   kNone,
+  kSlow,    ///< follows its plan more slowly
   kRefuse,  ///< the plan is not followed: the robot brakes until another one begins
   kHold,    ///< brakes; goes on when the cause has been gone for resume_s and a new plan begins
   kBrake,   ///< brakes, and stays until a person rearms it
   kAbort,   ///< the motion ends at once: the robot stops by itself
 };
-/// "none", "refuse", "hold", "brake", "abort".
+/// "none", "slow", "refuse", "hold", "brake", "abort".
 const char* ToString(Reaction reaction);
 
 /// What the supervisor found, when it found it.
@@ -69,6 +70,8 @@ struct SafetySettings {
   double obstacle_speed_m_s = 0.5;
   double obstacle_acceleration_m_s2 = 2;
 
+  double slow_after_s = 0.15;     ///< 1: with a report older than that it moves at stale_pace
+  double stale_pace = 0.3;        ///< 1: share of the speed that was planned
   double stale_s = 0.3;           ///< 1, 2: the oldest a report, or an obstacle in it, may be
   double future_s = 0.01;         ///< 3
   double splice_q_rad = 0.005;    ///< 6
@@ -82,6 +85,9 @@ struct SafetySettings {
   double floor_margin_m = 0.02;   ///< 8
   double clearance_m = 0.05;      ///< 9
   double margin_m = 0.03;         ///< 10: for what is not known exactly
+  double slow_m = 0.1;            ///< 10: so far before that margin is used up it begins to slow
+  double approach_m = 0.02;       ///< 10: slows in full only if resting would leave so much more
+  double near_pace = 0.1;         ///< 10: share of the speed that was planned, at the margin
   double tracking_rad = 0.02;     ///< 11
   JointVector torque_n_m;         ///< 12: at which the robot would stop by itself; empty: not known
   double torque_share = 0.5;      ///< 12: of that

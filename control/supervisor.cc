@@ -76,7 +76,7 @@ bool Supervisor::Refuses(const JointPoint& before, bool begins, const JointPoint
   double share = largest(shares(measured.commanded, !begins && other == nullptr));
   if (other != nullptr) share = std::min(share, largest(shares(*other, !begins)));
   now_ = measured.t;
-  is_found_[static_cast<std::size_t>(SafetyCheck::kSplice)] = false;  // each plan is told of
+  found_[static_cast<std::size_t>(SafetyCheck::kSplice)] = Reaction::kNone;  // each plan is told of
   const Reaction worst = std::exchange(worst_, Reaction::kNone);
   if (!(share <= 1)) Find(SafetyCheck::kSplice, Reaction::kRefuse, true, share, 1);
   const bool is_refused = worst_ != Reaction::kNone;
@@ -89,31 +89,31 @@ Reaction Supervisor::Judge(const Measured& measured, const JointPoint& next,
   now_ = measured.t;
   if (!begin_) begin_ = now_;
   worst_ = Reaction::kNone;
+  pace_ = 1;
   const ObstacleReport* const report = reports_.Get();
   // A robot at rest has nothing to brake: it waits.
-  const Reaction if_near = IsMoving(measured.commanded) ? Reaction::kBrake : Reaction::kHold;
+  const Reaction if_low = IsMoving(measured.commanded) ? Reaction::kBrake : Reaction::kHold;
   JudgePerception(report);
   JudgeRobot(measured);
   JudgeCommand(measured, next, period_s);
-  JudgePlaces(report, next, period_s, if_near);
+  JudgePlaces(report, next, period_s, if_low);
   pushed_s_ = 0 < pushed_s_ ? pushed_s_ + period_s : pushed_s_;
   return React();
 }
 
-void Supervisor::Find(SafetyCheck check, Reaction reaction, bool is_found, double value,
-                      double limit) {
-  bool& was_found = is_found_[static_cast<std::size_t>(check)];
-  if (is_found) {
-    worst_ = std::max(worst_, reaction);
-    if (!was_found) findings_.Append({now_, check, reaction, value, limit});
-  }
-  was_found = is_found;
+void Supervisor::Find(SafetyCheck check, Reaction reaction, double value, double limit) {
+  Reaction& found = found_[static_cast<std::size_t>(check)];
+  worst_ = std::max(worst_, reaction);
+  if (reaction > found) findings_.Append({now_, check, reaction, value, limit});
+  found = reaction;
 }
 
 void Supervisor::JudgePerception(const ObstacleReport* report) {
   const double age_s = (now_ - (report == nullptr ? *begin_ : report->t)).seconds();
-  Find(SafetyCheck::kPerceptionStale, Reaction::kHold, age_s > settings_.stale_s, age_s,
-       settings_.stale_s);
+  const bool is_stale = age_s > settings_.stale_s, is_old = age_s > settings_.slow_after_s;
+  if (is_old) pace_ = std::min(pace_, settings_.stale_pace);
+  Find(SafetyCheck::kPerceptionStale, is_stale ? Reaction::kHold : Reaction::kSlow, is_old, age_s,
+       is_stale ? settings_.stale_s : settings_.slow_after_s);
   Find(SafetyCheck::kTimeStamps, Reaction::kHold, age_s < -settings_.future_s, -age_s,
        settings_.future_s);
   double oldest_s = 0, fastest_m_s = 0;
@@ -178,8 +178,13 @@ void Supervisor::JudgeCommand(const Measured& measured, const JointPoint& next, 
   Find(SafetyCheck::kLimits, Reaction::kBrake, !(use <= 1 + kRounding), use, 1);
 }
 
+Supervisor::Reach Supervisor::ReachAfter(const ObstacleState& obstacle, double after_s) const {
+  const double ahead_s = std::max(0.0, (now_ - obstacle.t).seconds() + after_s);
+  return {ahead_s * obstacle.v_W, settings_.obstacle_acceleration_m_s2 * ahead_s * ahead_s / 2};
+}
+
 void Supervisor::JudgePlaces(const ObstacleReport* report, const JointPoint& next, double period_s,
-                             Reaction if_near) {
+                             Reaction if_low) {
   PlaceStop(next, period_s);
   double lowest_m = kInfinity, nearest_m = kInfinity, margin_m = kInfinity;
   for (std::size_t c = 0; c < static_cast<std::size_t>(capsules_.size()); ++c) {
@@ -196,26 +201,63 @@ void Supervisor::JudgePlaces(const ObstacleReport* report, const JointPoint& nex
         half_way_m = std::max({half_way_m, (near.a - at.a).norm() / 2, (near.b - at.b).norm() / 2});
       }
       for (const ObstacleState& obstacle : report->obstacles) {
-        const double ahead_s = std::max(0.0, (now_ - obstacle.t).seconds() + placed_s_[k]);
-        const double reach_m = settings_.obstacle_acceleration_m_s2 * ahead_s * ahead_s / 2;
-        const Eigen::Vector3d shift_W = ahead_s * obstacle.v_W;
+        const Reach reach = ReachAfter(obstacle, placed_s_[k]);
         // Most are too far to matter, which the balls around both tell sooner.
-        const double least_m = LeastDistance(at, obstacle, shift_W);
+        const double least_m = LeastDistance(at, obstacle, reach.shift_W);
         const bool matters =
-            least_m - reach_m - half_way_m < margin_m || (k == 0 && least_m < nearest_m);
+            least_m - reach.radius_m - half_way_m < margin_m || (k == 0 && least_m < nearest_m);
         if (!matters) continue;
-        const double distance_m = Distance(at, obstacle, shift_W);
+        const double distance_m = Distance(at, obstacle, reach.shift_W);
         if (k == 0) nearest_m = std::min(nearest_m, distance_m);
-        margin_m = std::min(margin_m, distance_m - reach_m - half_way_m);
+        margin_m = std::min(margin_m, distance_m - reach.radius_m - half_way_m);
       }
     }
   }
   const double least_height_m = settings_.floor_m + settings_.floor_margin_m;
-  Find(SafetyCheck::kWorkspace, if_near, lowest_m < least_height_m, lowest_m, least_height_m);
-  Find(SafetyCheck::kClearance, if_near, nearest_m < settings_.clearance_m, nearest_m,
+  Find(SafetyCheck::kWorkspace, if_low, lowest_m < least_height_m, lowest_m, least_height_m);
+  Find(SafetyCheck::kClearance, Reaction::kHold, nearest_m < settings_.clearance_m, nearest_m,
        settings_.clearance_m);
-  Find(SafetyCheck::kStopPath, if_near, margin_m < settings_.margin_m, margin_m,
-       settings_.margin_m);
+  const double left_m = margin_m - settings_.margin_m;
+  double pace = 1;
+  if (left_m < settings_.slow_m) {
+    pace = PaceFor(left_m, MarginAtRest(*report) - settings_.margin_m);
+    pace_ = std::min(pace_, pace);
+  }
+  // It is told again that it slows only after there was a fifth more room than would slow it.
+  const bool was_found =
+      found_[static_cast<std::size_t>(SafetyCheck::kStopPath)] != Reaction::kNone;
+  const bool is_slow = pace < 1 || (was_found && left_m < 1.2 * settings_.slow_m);
+  if (left_m < 0) {
+    Find(SafetyCheck::kStopPath, Reaction::kHold, margin_m, settings_.margin_m);
+  } else {
+    Find(SafetyCheck::kStopPath, Reaction::kSlow, is_slow, margin_m,
+         settings_.margin_m + settings_.slow_m);
+  }
+}
+
+// What would be left in the same time, if the arm stood where it is now.
+double Supervisor::MarginAtRest(const ObstacleReport& report) const {
+  double margin_m = kInfinity;
+  for (std::size_t c = 0; c < static_cast<std::size_t>(capsules_.size()); ++c) {
+    const ArmCapsules::Placed& at = placed_[0][c];
+    if (!at.moves) continue;
+    for (const double after_s : placed_s_) {
+      for (const ObstacleState& obstacle : report.obstacles) {
+        const Reach reach = ReachAfter(obstacle, after_s);
+        if (LeastDistance(at, obstacle, reach.shift_W) - reach.radius_m >= margin_m) continue;
+        margin_m = std::min(margin_m, Distance(at, obstacle, reach.shift_W) - reach.radius_m);
+      }
+    }
+  }
+  return margin_m;
+}
+
+// In proportion to what is left, but as quick as planned where it is not the arm's motion that
+// brings the two together: there, who slows down is caught.
+double Supervisor::PaceFor(double left_m, double at_rest_m) const {
+  const double near = std::clamp(left_m / settings_.slow_m, settings_.near_pace, 1.0);
+  const double aside = std::clamp(1 - (at_rest_m - left_m) / settings_.approach_m, 0.0, 1.0);
+  return std::max(near, aside);
 }
 
 void Supervisor::PlaceStop(const JointPoint& next, double period_s) {
@@ -242,7 +284,10 @@ void Supervisor::PlaceStop(const JointPoint& next, double period_s) {
 }
 
 Reaction Supervisor::React() {
-  if (settings_.profile != SafetyProfile::kLab) return Reaction::kNone;
+  if (settings_.profile != SafetyProfile::kLab) {
+    pace_ = 1;
+    return Reaction::kNone;
+  }
   const int rearms = rearms_.load(std::memory_order_relaxed);
   if (rearms != std::exchange(rearmed_, rearms)) is_braked_ = false;
   if (worst_ == Reaction::kBrake) is_braked_ = true;

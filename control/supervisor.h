@@ -21,7 +21,8 @@ namespace sidestep::control {
 /// Its promise rests on an induction: a motion is let through only if the stop that would follow it
 /// meets no place that an obstacle can reach by then, where an obstacle moves as it was seen to and
 /// may change its velocity by obstacle_acceleration. So at every tick there is a stop that has been
-/// checked. It is not certified and does not make a robot safe for people.
+/// checked. Before a stop is due it asks for a slower pace. It is not certified and does not make a
+/// robot safe for people.
 ///
 /// One thread watches, one judges. Judge allocates nothing, takes no lock and never waits.
 class Supervisor {
@@ -52,6 +53,9 @@ class Supervisor {
   /// What is to be done instead of sending `next`: kNone, kHold or kBrake.
   Reaction Judge(const Measured& measured, const JointPoint& next, double period_s) noexcept;
 
+  /// The share of the planned speed at which plans are to be followed on, as of the latest Judge.
+  double pace() const { return pace_; }
+
   /// Calls take(Finding) for what has begun to be found since the last call.
   template <class Take>
   void DrainFindings(const Take& take) {
@@ -61,12 +65,25 @@ class Supervisor {
  private:
   static constexpr int kStops = 8;  // the way to rest is looked at in so many pieces
 
-  void Find(SafetyCheck check, Reaction reaction, bool is_found, double value, double limit);
+  // Where an obstacle can have come: anywhere within the radius of where it would be by itself.
+  struct Reach {
+    Eigen::Vector3d shift_W;
+    double radius_m;
+  };
+  Reach ReachAfter(const ObstacleState& obstacle, double after_s) const;
+
+  // kNone: it is not found.
+  void Find(SafetyCheck check, Reaction reaction, double value, double limit);
+  void Find(SafetyCheck check, Reaction reaction, bool is_found, double value, double limit) {
+    Find(check, is_found ? reaction : Reaction::kNone, value, limit);
+  }
   void JudgePerception(const ObstacleReport* report);
   void JudgeRobot(const Measured& measured);
   void JudgeCommand(const Measured& measured, const JointPoint& next, double period_s);
   void JudgePlaces(const ObstacleReport* report, const JointPoint& next, double period_s,
-                   Reaction if_near);
+                   Reaction if_low);
+  double MarginAtRest(const ObstacleReport& report) const;
+  double PaceFor(double left_m, double at_rest_m) const;
   void PlaceStop(const JointPoint& next, double period_s);
   Reaction React();
 
@@ -82,8 +99,9 @@ class Supervisor {
   // Of the thread that judges.
   EpisodeTime now_;
   std::optional<EpisodeTime> begin_;
-  std::array<bool, kNumSafetyChecks> is_found_{};
+  std::array<Reaction, kNumSafetyChecks> found_{};
   Reaction worst_ = Reaction::kNone;  // of this tick
+  double pace_ = 1;
   double pushed_s_ = 0;
   std::optional<EpisodeTime> fast_since_;
   int rearmed_ = 0;

@@ -118,7 +118,7 @@ PandaRobot::~PandaRobot() {
 
 robot::RobotStatus PandaRobot::Status() const {
   const robot::RobotMode mode = has_ended_ ? robot::RobotMode::kFault : follower_.mode();
-  return {mode, mode == robot::RobotMode::kFault ? why_ : ""};
+  return {mode, mode == robot::RobotMode::kFault ? why_ : "", follower_.is_held(), follower_.lag()};
 }
 
 void PandaRobot::Submit(const Trajectory& trajectory, EpisodeTime start) {

@@ -40,6 +40,10 @@ void Replanner::Forget() {
   is_braking_ = false;
 }
 
+void Replanner::Delay(HorizonOffset by) {
+  if (running_) running_->start = running_->start + by;
+}
+
 void Replanner::Accept(const CycleResult& result) {
   if (!result.plan) return;
   running_ = result.plan;

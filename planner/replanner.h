@@ -32,6 +32,9 @@ class Replanner {
   /// The robot has left the plan that ran, and stops: what follows begins where it is.
   void Forget();
 
+  /// The robot follows its plan later than it did, for having slowed down.
+  void Delay(HorizonOffset by);
+
   /// From now on the result's plan is the one that runs, if it has one. A result that is not
   /// accepted (it came too late) changes nothing.
   void Accept(const CycleResult& result);

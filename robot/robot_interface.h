@@ -21,7 +21,10 @@ enum class RobotMode {
 
 struct RobotStatus {
   RobotMode mode = RobotMode::kDisarmed;
-  std::string why;  ///< it holds or has stopped, where nobody told it to; else empty
+  std::string why;       ///< it holds or has stopped, where nobody told it to; else empty
+  bool is_held = false;  ///< by its own safety: it would not follow a plan that begins now
+  /// By how much it follows plans late, for having slowed down.
+  HorizonOffset lag{0};
 };
 
 /// A robot that follows trajectories, simulated or real. One thread at a time.
@@ -35,9 +38,10 @@ class RobotInterface {
   virtual RobotStatus Status() const = 0;
 
   /// Follows `trajectory` from `start` on; until then, what was submitted before goes on, and
-  /// before the first one the robot is held. A start in the past is allowed: the robot joins the
-  /// trajectory where it is now. The robot's own limits hold whatever is asked for: what it cannot
-  /// follow, it follows late.
+  /// before the first one the robot is held. Where it is late by Status().lag, what is to begin at
+  /// a moment has to be given a start that much before. A start in the past is allowed: the robot
+  /// joins the trajectory where it is now. The robot's own limits hold whatever is asked for: what
+  /// it cannot follow, it follows late.
   /// @throws std::invalid_argument for a wrong shape or a value that is not finite.
   virtual void Submit(const Trajectory& trajectory, EpisodeTime start) = 0;
 

@@ -36,7 +36,7 @@ JointState SimulatedRobot::Read() const { return {world_.time(), world_.q(), wor
 
 robot::RobotStatus SimulatedRobot::Status() const {
   const robot::RobotMode mode = follower_.mode();
-  return {mode, mode == robot::RobotMode::kFault ? why_ : ""};
+  return {mode, mode == robot::RobotMode::kFault ? why_ : "", follower_.is_held(), follower_.lag()};
 }
 
 void SimulatedRobot::Submit(const Trajectory& trajectory, EpisodeTime start) {

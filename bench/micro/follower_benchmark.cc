@@ -11,7 +11,7 @@
 namespace sidestep::control {
 namespace {
 
-// A Panda that swings to and fro while `num_obstacles` things pass it.
+// A Panda that swings to and fro while things pass it, far off or so near that it would slow down.
 void BM_FollowerTick(benchmark::State& state) {
   const robot::RobotModel panda =
       robot::RobotModel::Load(SIDESTEP_SOURCE_DIR "/models", "panda", Pose());
@@ -19,6 +19,7 @@ void BM_FollowerTick(benchmark::State& state) {
   if (state.range(0) > 0) safety.profile = SafetyProfile::kObserve;
   Follower follower(panda, TrackerLimits::Of(panda), safety);
 
+  const bool is_near = state.range(1) != 0;
   constexpr int kStates = 101;
   Trajectory swing;
   swing.t_s = Eigen::VectorXd::LinSpaced(kStates, 0, 10);
@@ -41,7 +42,7 @@ void BM_FollowerTick(benchmark::State& state) {
       for (int i = 0; i < state.range(0); ++i) {
         ObstacleState& box = report.obstacles.emplace_back();
         box.t = report.t;
-        box.X_WO = Pose::Translation({1.2, 0.3 * i, 0.5});
+        box.X_WO = Pose::Translation({is_near ? 0.65 : 1.2, 0.3 * i, 0.5});
         box.half_extents_m.setConstant(0.2);
         box.v_W = {0, 0.3, 0};
       }
@@ -66,8 +67,12 @@ void BM_FollowerTick(benchmark::State& state) {
   state.counters["p50_us"] = at(0.5);
   state.counters["p99.9_us"] = at(0.999);
 }
-// The number of obstacles; 0: without a supervisor.
-BENCHMARK(BM_FollowerTick)->Arg(0)->Arg(1)->Arg(4)->Arg(16)->UseManualTime();
+// No obstacles: without a supervisor.
+BENCHMARK(BM_FollowerTick)
+    ->ArgNames({"obstacles", "near"})
+    ->Args({0, 0})
+    ->ArgsProduct({{1, 4, 16}, {0, 1}})
+    ->UseManualTime();
 
 }  // namespace
 }  // namespace sidestep::control

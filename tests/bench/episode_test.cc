@@ -132,6 +132,45 @@ TEST_F(Episode, OfARobotThatDoesNotMoveEndsAtTwiceTheHorizon) {
   EXPECT_NEAR(result.recording.control.back().t.seconds(), 4.0, 0.0015);
 }
 
+TEST_F(Episode, OfARobotThatHasSlowedDownPlansOnFromWhereItIsOnItsPlan) {
+  world_.slow_from_s = 0.55;
+  world_.slow_until_s = 0.95;
+  const EpisodeResult result = Run();
+  EXPECT_EQ(result.outcome, Outcome::kGoal);
+  const record::Recording& recording = result.recording;
+  int compared = 0;
+  for (const CycleRecord& cycle : recording.cycles) {
+    if (!cycle.accepted || cycle.t.seconds() < 0.95 || cycle.t.seconds() > 1.9) continue;
+    for (const ControlSample& tick : recording.control) {
+      const HorizonOffset ahead = tick.t - cycle.t_effect;
+      if (ahead.seconds() < 0 || ahead.seconds() > 0.05) continue;
+      const TrajectoryPoint planned = Sample(cycle.plan, tick.t - cycle.plan_start);
+      EXPECT_LT((tick.q - planned.q).cwiseAbs().maxCoeff(), 1e-6) << tick.t.seconds();
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 100);
+  EXPECT_NEAR(recording.metrics.at("time_to_goal_s"), scenario_.horizon_s + 0.2, 0.05);
+}
+
+TEST_F(Episode, OfARobotThatWasHeldGoesOnFromWhereItRests) {
+  world_.held_from_s = 0.55;
+  for (const double until_s : {0.85, 0.95, 1.05}) {
+    world_.held_until_s = until_s;
+    EpisodeOptions options;
+    options.horizons = 3;
+    const EpisodeResult result = RunEpisode(scenario_, arm_, world_.Factory(), options);
+    const std::vector<ControlSample>& control = result.recording.control;
+    for (std::size_t i = 1; i < control.size(); ++i) {
+      const double jump_rad = (control[i].q - control[i - 1].q).cwiseAbs().maxCoeff();
+      ASSERT_LT(jump_rad, 0.003) << control[i].t.seconds() << " s, held until " << until_s;
+    }
+    // A plan of a whole horizon, after a cycle that may have just begun.
+    const double time_to_goal_s = result.recording.metrics.at("time_to_goal_s");
+    EXPECT_LT(time_to_goal_s, until_s + 0.2 + scenario_.horizon_s) << "held until " << until_s;
+  }
+}
+
 TEST_F(Episode, OfARobotThatSeesNothingGetsNoPlanAndSaysWhy) {
   world_.sees = false;
   scenario_.moving_obstacles.clear();

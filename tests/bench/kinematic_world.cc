@@ -34,8 +34,9 @@ class Robot final : public robot::RobotInterface {
   JointState Read() const override { return {now(), q_, v_}; }
 
   robot::RobotStatus Status() const override {
-    if (world_.holds) return {robot::RobotMode::kHolding, ""};
-    return {trajectory_ ? robot::RobotMode::kMoving : robot::RobotMode::kReady, ""};
+    if (world_.holds || is_held_) return {robot::RobotMode::kHolding, "", is_held_};
+    return {trajectory_ ? robot::RobotMode::kMoving : robot::RobotMode::kReady, "", false,
+            HorizonOffset(lag_s_)};
   }
 
   void Submit(const Trajectory& trajectory, EpisodeTime start) override {
@@ -71,10 +72,21 @@ class Robot final : public robot::RobotInterface {
 
  private:
   void Tick() {
-    if (trajectory_ && world_.moves && now() >= start_) {
-      const TrajectoryPoint point = Sample(*trajectory_, now() - start_);
+    const double t_s = now().seconds();
+    is_held_ = t_s > world_.held_from_s && t_s <= world_.held_until_s;
+    if (is_held_) {
+      Hold();
+      v_.setZero();
+      a_.setZero();
+    }
+    const bool is_slow = t_s > world_.slow_from_s && t_s <= world_.slow_until_s;
+    const double pace = is_slow ? 0.5 : 1;
+    lag_s_ += (1 - pace) / kTicksPerSecond;
+    const EpisodeTime planned = now() - HorizonOffset(lag_s_);
+    if (trajectory_ && world_.moves && planned >= start_) {
+      const TrajectoryPoint point = Sample(*trajectory_, planned - start_);
       q_ = point.q;
-      v_ = point.v;
+      v_ = pace * point.v;
       a_ = point.a;
     }
     history_.push_back({now(), q_, v_, a_, q_, v_, Eigen::VectorXd::Zero(q_.size())});
@@ -84,6 +96,8 @@ class Robot final : public robot::RobotInterface {
   KinematicWorld& world_;
   std::int64_t ticks_ = 0;
   std::size_t taken_ = 0;
+  double lag_s_ = 0;
+  bool is_held_ = false;
   Eigen::VectorXd q_, v_, a_;
   std::optional<Trajectory> trajectory_;
   EpisodeTime start_;

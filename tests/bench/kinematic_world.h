@@ -22,6 +22,15 @@ struct KinematicWorld {
   /// From then on the sensor has nothing more to give, though it says that it is overdue.
   double falls_silent_at_s = std::numeric_limits<double>::infinity();
 
+  /// Between these it follows its plans at half their speed, and from then on as late as that made
+  /// it.
+  double slow_from_s = std::numeric_limits<double>::infinity();
+  double slow_until_s = std::numeric_limits<double>::infinity();
+
+  /// Between these its own safety keeps it at rest, and it forgets what it is told to follow.
+  double held_from_s = std::numeric_limits<double>::infinity();
+  double held_until_s = std::numeric_limits<double>::infinity();
+
   /// What the loop did: at `when`, it submitted a trajectory to be followed from `start`.
   struct Submission {
     EpisodeTime when, start;

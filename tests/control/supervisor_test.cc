@@ -98,11 +98,13 @@ class Scene {
   robot::RobotMode mode() const { return follower_.mode(); }
   bool is_at_rest() const { return state_.v.isZero(0) && state_.a.isZero(0); }
   double last_moved_s() const { return last_moved_s_; }
-  // The first event of each check.
-  std::map<SafetyCheck, Finding> events() const {
-    std::map<SafetyCheck, Finding> first;
-    for (const Finding& event : findings_) first.emplace(event.check, event);
-    return first;
+  const std::vector<Finding>& events() const { return findings_; }
+  // The first one of a check with that reaction; null if there is none.
+  const Finding* First(SafetyCheck check, Reaction reaction) const {
+    const auto found = std::find_if(findings_.begin(), findings_.end(), [&](const Finding& event) {
+      return event.check == check && event.reaction == reaction;
+    });
+    return found == findings_.end() ? nullptr : &*found;
   }
   // From the arm, as it is, to a ball.
   double DistanceTo(const ObstacleState& ball) const {
@@ -165,7 +167,7 @@ std::vector<Fault> Faults() {
        seen([](EpisodeTime t) {
          return ObstacleReport{t, {Ball({-3, 3, 1}, {0, -0.6, 0}, t)}};
        })},
-      {"SomethingTooNear", SafetyCheck::kClearance, Reaction::kBrake, 0.02, seen([](EpisodeTime t) {
+      {"SomethingTooNear", SafetyCheck::kClearance, Reaction::kHold, 0.02, seen([](EpisodeTime t) {
          return ObstacleReport{t, {Ball({0.3, 0, 1.35}, Vector3d::Zero(), t)}};
        })},
       {"TheArmNotWhereItWasTold", SafetyCheck::kTracking, Reaction::kBrake, 0.002,
@@ -213,13 +215,11 @@ TEST_P(SupervisorFault, IsFoundAndTheRobotComesToRestAsSpecified) {
   ASSERT_GT(scene.state().v.norm(), 0.1) << "it was at rest anyway";
   fault.inject(scene);
   ASSERT_NO_FATAL_FAILURE(scene.RunTo(5));
-  const auto events = scene.events();
-  const auto found = events.find(fault.check);
-  ASSERT_NE(found, events.end());
-  EXPECT_EQ(found->second.reaction, fault.reaction);
-  EXPECT_LE(found->second.t.seconds(), 1 + fault.found_by_s + 1e-9);
+  const Finding* const found = scene.First(fault.check, fault.reaction);
+  ASSERT_NE(found, nullptr);
+  EXPECT_LE(found->t.seconds(), 1 + fault.found_by_s + 1e-9);
   EXPECT_TRUE(scene.is_at_rest());
-  EXPECT_LE(scene.last_moved_s(), found->second.t.seconds() + 0.35);  // the longest stop
+  EXPECT_LE(scene.last_moved_s(), found->t.seconds() + 0.35);  // the longest stop
   EXPECT_EQ(scene.mode(), fault.reaction == Reaction::kBrake ? robot::RobotMode::kFault
                                                              : robot::RobotMode::kHolding);
 }
@@ -260,12 +260,66 @@ TEST_P(SupervisorFault, IsOnlyWrittenDownWhenItObserves) {
   ASSERT_NO_FATAL_FAILURE(scene.RunTo(1));
   fault.inject(scene);
   ASSERT_NO_FATAL_FAILURE(scene.RunTo(4.5));
-  EXPECT_EQ(scene.events().count(fault.check), 1u);
+  EXPECT_NE(scene.First(fault.check, fault.reaction), nullptr);
   EXPECT_EQ(scene.mode(), robot::RobotMode::kMoving);
+  EXPECT_EQ(scene.follower().lag().seconds(), 0) << "it has slowed down";
 }
 
 INSTANTIATE_TEST_SUITE_P(Injected, SupervisorFault, testing::ValuesIn(Faults()),
                          [](const auto& test) { return std::string(test.param.name); });
+
+// Where the swing is, for the first joint, that far into it.
+double Swung(double t_s) { return 0.5 * (1 - std::cos(2 * 3.14159265358979 / 4 * t_s)); }
+
+TEST(Supervisor, SlowsWithoutAScanFor150MsAndGoesOnLateByWhatThatCost) {
+  Scene scene;
+  const double start = scene.state().q(0);
+  double latest_s = 0;
+  // Between 0.7 s and 0.95 s there is no scan.
+  scene.see = [&](EpisodeTime t) {
+    if (t.seconds() < 0.7 || t.seconds() >= 0.95) latest_s = t.seconds();
+    return ObstacleReport{EpisodeTime(latest_s), {}};
+  };
+  ASSERT_NO_FATAL_FAILURE(scene.RunTo(0.84));
+  EXPECT_EQ(scene.follower().lag().seconds(), 0);
+  ASSERT_NO_FATAL_FAILURE(scene.RunTo(0.95));
+  const Finding* const found = scene.First(SafetyCheck::kPerceptionStale, Reaction::kSlow);
+  ASSERT_NE(found, nullptr);
+  EXPECT_NEAR(found->t.seconds(), 0.69 + 0.15, 0.002);
+  EXPECT_GT(scene.follower().lag().seconds(), 0.02);
+  EXPECT_EQ(scene.mode(), robot::RobotMode::kMoving);
+  ASSERT_NO_FATAL_FAILURE(scene.RunTo(2.5));
+  EXPECT_THAT(scene.events(), testing::SizeIs(1))
+      << "it slows within the limits, and does not stop";
+  // It goes on with the same plan, at full speed, late by what it has lost.
+  const double lag_s = scene.follower().lag().seconds();
+  EXPECT_LT(lag_s, 0.25);
+  EXPECT_NEAR(scene.state().q(0) - start, Swung(2.499 - lag_s), 1e-4);
+}
+
+TEST(Supervisor, LeavesThirtyPercentOfTheSpeedToAStaleView) {
+  SafetySettings settings = Lab();
+  settings.stale_s = 10;
+  Scene scene(settings);
+  scene.see = [](EpisodeTime) { return ObstacleReport{EpisodeTime(0), {}}; };
+  ASSERT_NO_FATAL_FAILURE(scene.RunTo(1));
+  const double lag_s = scene.follower().lag().seconds();
+  ASSERT_NO_FATAL_FAILURE(scene.RunTo(2));
+  EXPECT_NEAR(scene.follower().lag().seconds() - lag_s, 0.7, 1e-9);
+}
+
+TEST(Supervisor, SlowsBeforeItHasToStop) {
+  Scene scene;
+  // In the way of the hand, and stays.
+  scene.see = [](EpisodeTime t) {
+    return ObstacleReport{t, {Ball({0.22, 0.5, 1.1}, Vector3d::Zero(), t)}};
+  };
+  ASSERT_NO_FATAL_FAILURE(scene.RunTo(2));
+  const Finding* const slow = scene.First(SafetyCheck::kStopPath, Reaction::kSlow);
+  ASSERT_NE(slow, nullptr);
+  EXPECT_EQ(scene.First(SafetyCheck::kClearance, Reaction::kHold), nullptr);
+  EXPECT_GT(scene.follower().lag().seconds(), 0.1);
+}
 
 // Balls from all sides, at the arm, within what was declared: they change their velocity as hard as
 // they may, at random. The arm may be touched at rest, never in motion.
@@ -297,7 +351,7 @@ TEST(Supervisor, IsAtRestBeforeAnythingWithinTheEnvelopeTouchesIt) {
         break;
       }
     }
-    if (scene.events().count(SafetyCheck::kStopPath) > 0) ++stops;
+    if (scene.First(SafetyCheck::kStopPath, Reaction::kHold) != nullptr) ++stops;
   }
   EXPECT_GT(stops, 20) << "nothing came near enough to show anything";
 }

@@ -1,0 +1,175 @@
+#include "tests/support/supervised_episode.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <variant>
+
+#include "sidestep/bench/resolve.h"
+#include "sidestep/record/questions.h"
+#include "sidestep/sim/simulation.h"
+
+namespace sidestep {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kMoving_rad_s = 1e-3;
+constexpr double kNever = 1e9;
+constexpr double kHorizons = 3;   // who waits for a box to pass needs longer than two
+constexpr double kGivesUp_s = 5;  // who has not moved for so long
+
+// What a box may do at most, and at least.
+struct Range {
+  double least_m_s, most_m_s, most_m_s2;
+};
+Range RangeOf(Envelope envelope) {
+  return envelope == Envelope::kWithin ? Range{0.1, 0.48, 1.9} : Range{0.5, 1.5, 10};
+}
+
+// Comes from all sides, through where the arm works.
+scenarios::Motion RandomMotion(const Range& range, RandomStream& random) {
+  const double side_rad = random.Uniform(-2.6, 2.6);
+  const double height_m = random.Uniform(0.2, 0.9);
+  const Vector3d start_m(1.2 * std::cos(side_rad), 1.2 * std::sin(side_rad), height_m);
+  const Vector3d through_m(random.Uniform(0.1, 0.6), random.Uniform(-0.6, 0.4), height_m);
+  const Vector3d direction = (through_m - start_m).normalized();
+  const double speed_m_s = random.Uniform(range.least_m_s, range.most_m_s);
+  switch (random.Bits() % 3) {
+    case 0:
+      return scenarios::LinearMotion{start_m, direction, speed_m_s, kNever, 0};
+    case 1:
+      return scenarios::AcceleratedMotion{start_m,
+                                          direction,
+                                          speed_m_s,
+                                          random.Uniform(-range.most_m_s2, range.most_m_s2),
+                                          random.Uniform(0, 5),
+                                          range.most_m_s,
+                                          kNever,
+                                          0};
+    default: {
+      const double least_m = speed_m_s * speed_m_s / range.most_m_s2;
+      const double radius_m = std::max(least_m, random.Uniform(0.2, 0.8));
+      return scenarios::CircleMotion{through_m + Vector3d(radius_m, 0, 0),
+                                     radius_m,
+                                     random.Uniform(-1.5, 1.5),
+                                     random.Bits() % 2 == 0,
+                                     speed_m_s,
+                                     kNever,
+                                     0};
+    }
+  }
+}
+
+bool BeginsFarFromTheArm(const scenarios::MovingObstacle& box) {
+  const Vector3d p_W = PoseAt(box, EpisodeTime(0)).translation();
+  return (p_W - Vector3d(0, -0.3, 0.5)).norm() > 0.75;
+}
+
+void Describe(const scenarios::Motion& motion, SupervisedEpisode& episode) {
+  if (const auto* const linear = std::get_if<scenarios::LinearMotion>(&motion)) {
+    episode.motion = "linear";
+    episode.speed_m_s = linear->speed_m_s;
+  } else if (const auto* const changing = std::get_if<scenarios::AcceleratedMotion>(&motion)) {
+    episode.motion = "accelerated";
+    episode.speed_m_s =
+        changing->acceleration_m_s2 < 0 ? changing->speed_m_s : changing->max_speed_m_s;
+    episode.acceleration_m_s2 = std::abs(changing->acceleration_m_s2);
+  } else if (const auto* const circle = std::get_if<scenarios::CircleMotion>(&motion)) {
+    episode.motion = "circle";
+    episode.speed_m_s = circle->speed_m_s;
+    episode.acceleration_m_s2 = circle->speed_m_s * circle->speed_m_s / circle->radius_m;
+  }
+}
+
+// The speed of the fastest sphere of the arm.
+double FastestSphere(const robot::RobotModel& robot, const ControlSample& tick) {
+  const robot::SphereCenters centers =
+      robot.ComputeSphereCenters(tick.q_command, /*with_jacobian=*/true);
+  double fastest_m_s = 0;
+  for (Eigen::Index s = 0; s < centers.p_WS.cols(); ++s) {
+    const Vector3d v_m_s = centers.Jq.middleRows(3 * s, 3) * tick.v_command;
+    fastest_m_s = std::max(fastest_m_s, v_m_s.norm());
+  }
+  return fastest_m_s;
+}
+
+scenarios::Scenario LoadBase(const std::string& source_dir) {
+  return scenarios::LoadScenario(
+      source_dir + "/scenarios/hardware_single_table.yaml",
+      {{"sensor",
+        "{name: tags, rate_hz: 30, tags: {position_m: [2, 0, 2], across_noise: 0, "
+        "along_noise_per_m: 0}}"}});
+}
+
+}  // namespace
+
+SupervisedEpisodes::SupervisedEpisodes(const std::string& source_dir, Envelope envelope)
+    : models_(source_dir + "/models"),
+      envelope_(envelope),
+      scenario_(LoadBase(source_dir)),
+      robot_(robot::RobotModel::Load(models_, scenario_.robot, scenario_.X_WB)) {
+  bench::ResolveTask(scenario_, robot_);
+}
+
+scenarios::Scenario SupervisedEpisodes::Make(std::uint64_t seed) const {
+  RandomStream random(seed, "supervised episodes");
+  scenarios::Scenario scenario = scenario_;
+  scenarios::MovingObstacle& box = scenario.moving_obstacles.front();
+  do {
+    box.motion = RandomMotion(RangeOf(envelope_), random);
+  } while (!BeginsFarFromTheArm(box));
+  return scenario;
+}
+
+bench::EpisodeResult SupervisedEpisodes::RunWhole(const scenarios::Scenario& scenario) const {
+  const robot::RobotInterface* arm = nullptr;
+  const auto make_world = [&](const scenarios::Scenario& of, const robot::RobotModel& model) {
+    bench::EpisodeWorld world =
+        bench::MakeEpisodeWorld(std::make_shared<sim::Simulation>(of, model, models_));
+    arm = world.robot;
+    return world;
+  };
+  bench::EpisodeOptions options;
+  options.horizons = kHorizons;
+  double moved_s = 0;
+  options.is_stopped = [&] {
+    const JointState state = arm->Read();
+    if (state.v.norm() > kMoving_rad_s) moved_s = state.t.seconds();
+    return state.t.seconds() > moved_s + kGivesUp_s;
+  };
+  return bench::RunEpisode(scenario, robot_, make_world, options);
+}
+
+SupervisedEpisode SupervisedEpisodes::Run(std::uint64_t seed) const {
+  const scenarios::Scenario scenario = Make(seed);
+  const bench::EpisodeResult result = RunWhole(scenario);
+  SupervisedEpisode episode;
+  episode.seed = seed;
+  Describe(scenario.moving_obstacles.front().motion, episode);
+  episode.outcome = result.outcome;
+  episode.reason = result.reason;
+  const double reached_s = result.recording.metrics.at("time_to_goal_s");
+  if (std::isfinite(reached_s)) episode.goal_s = reached_s;
+  for (const SafetyEvent& event : result.safety_events) {
+    ++episode.findings[event.check + " " + event.reaction];
+    if (event.check == "obstacle_too_fast" && !episode.too_fast_m_s)
+      episode.too_fast_m_s = event.value;
+  }
+  const auto touch = record::FirstTouch(result.recording);
+  if (touch) {
+    episode.touch_s = touch->t.seconds();
+    for (const ControlSample& tick : result.recording.control) {
+      if (std::abs((tick.t - touch->t).seconds()) >= 2e-3) continue;
+      if (tick.v_command.norm() > kMoving_rad_s) episode.touched_in_motion = true;
+      episode.touch_m_s = std::max(episode.touch_m_s, FastestSphere(robot_, tick));
+    }
+  }
+  return episode;
+}
+
+bench::FreePath SupervisedEpisodes::Search(std::uint64_t seed, int max_guesses) const {
+  return bench::SearchFreePath(Make(seed), robot_, max_guesses, seed);
+}
+
+}  // namespace sidestep
