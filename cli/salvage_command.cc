@@ -24,9 +24,10 @@ struct SalvageOptions {
   std::string folder, out;
 };
 
-// What has neither may be anybody's.
+// What tells no run may be anybody's.
 std::pair<bench::RunIdentity, std::map<std::string, std::string>> OriginOf(
     const record::Recording& recording, const std::string& journal) {
+  if (recording.joints.empty()) throw InputError(journal, "names no joints");
   try {
     return {IdentityIn(recording.header), VersionsIn(recording.header)};
   } catch (const std::out_of_range&) {
