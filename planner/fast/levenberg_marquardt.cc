@@ -63,7 +63,6 @@ LevenbergMarquardt::LevenbergMarquardt(TrajectoryObjective& objective, Ending en
     : objective_(objective), ending_(ending), present_(objective.MakeQuadratic()) {
   const std::size_t size = present_.vector_size();
   scale_.assign(size, 0.0);
-  diagonal_.assign(size, 0.0);
   damping_.assign(size, 0.0);
   step_.assign(size, 0.0);
 }

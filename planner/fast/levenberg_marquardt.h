@@ -46,7 +46,7 @@ class LevenbergMarquardt {
   ChainQuadratic present_;
   std::optional<ChainQuadratic> candidate_;  // made for the first step
   ChainSolver solver_;
-  sdf::AlignedVector<double> scale_, diagonal_, damping_, step_;
+  sdf::AlignedVector<double> scale_, damping_, step_;
   PlanCost cost_;
 };
 
