@@ -153,7 +153,7 @@ class CutOffOnHardware : public ::testing::TestWithParam<int> {
 
 TEST_P(CutOffOnHardware, ByBeingKilledLeavesWhatWasRecordedAndTheRobotAtRest) {
   client_->Signal(SIGKILL);
-  EXPECT_EQ(client_->Wait().exit_code, -1) << "it was over before";
+  EXPECT_EQ(client_->Finish().exit_code, -1) << "it was over before";
   const Recording recording = Salvage(out_);
   EXPECT_TRUE(GetParam() == 1 || recording.control.size() > 0);
   EXPECT_EQ(recording.joints.size(), 7u);
@@ -169,7 +169,7 @@ TEST_P(CutOffOnHardware, ByBeingKilledLeavesWhatWasRecordedAndTheRobotAtRest) {
 
 TEST_P(CutOffOnHardware, ByTheRobotGoingAwayKeepsItsResults) {
   server_->Signal(SIGKILL);
-  const Finished client = client_->Wait();
+  const Finished client = client_->Finish();
   EXPECT_EQ(client.exit_code, 1);
   EXPECT_EQ(NamesIn(out_), (std::vector<std::string>{"result.json", "trace.h5"}));
   EXPECT_EQ(record::ReadRecording(out_ + "/trace.h5").joints.size(), 7u);
@@ -178,7 +178,7 @@ TEST_P(CutOffOnHardware, ByTheRobotGoingAwayKeepsItsResults) {
 
 TEST_P(CutOffOnHardware, ByANetworkThatIsSilentKeepsItsResults) {
   server_->Signal(SIGSTOP);
-  const Finished client = client_->Wait();
+  const Finished client = client_->Finish();
   server_->Signal(SIGCONT);
   EXPECT_EQ(client.exit_code, 1);
   EXPECT_THAT(client.err, HasSubstr("the robot sends no state"));

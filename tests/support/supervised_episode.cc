@@ -133,10 +133,10 @@ bench::EpisodeResult SupervisedEpisodes::RunWhole(const scenarios::Scenario& sce
   bench::EpisodeOptions options;
   options.horizons = kHorizons;
   double moved_s = 0;
-  options.is_stopped = [&] {
+  options.why_stop = [&]() -> std::string {
     const JointState state = arm->Read();
     if (state.v.norm() > kMoving_rad_s) moved_s = state.t.seconds();
-    return state.t.seconds() > moved_s + kGivesUp_s;
+    return state.t.seconds() > moved_s + kGivesUp_s ? "it does not get on" : "";
   };
   return bench::RunEpisode(scenario, robot_, make_world, options);
 }
@@ -151,7 +151,7 @@ SupervisedEpisode SupervisedEpisodes::Run(std::uint64_t seed) const {
   episode.reason = result.reason;
   const double reached_s = result.recording.metrics.at("time_to_goal_s");
   if (std::isfinite(reached_s)) episode.goal_s = reached_s;
-  for (const SafetyEvent& event : result.safety_events) {
+  for (const SafetyEvent& event : result.recording.safety) {
     ++episode.findings[event.check + " " + event.reaction];
     if (event.check == "obstacle_too_fast" && !episode.too_fast_m_s)
       episode.too_fast_m_s = event.value;
