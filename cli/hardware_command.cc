@@ -158,8 +158,8 @@ int GoToStart(const HardwareOptions& options) {
   const DataPaths paths = FindDataPaths();
   const Problem problem = LoadForHardware(options, paths);
   control::SafetySettings safety = sim::SafetyOf(problem.scenario, problem.robot);
-  safety.stale_s = 1e9;            // it moves unseeing
-  std::optional<Operator> person;  // of the motion, until it has come to rest
+  safety.slow_after_s = safety.stale_s = 1e9;  // it moves unseeing
+  std::optional<Operator> person;              // of the motion, until it has come to rest
   const auto panda = ConnectReadyPanda(options.robot, problem.robot,
                                        {.safety = safety,
                                         .lockstep = options.clock == "lockstep",

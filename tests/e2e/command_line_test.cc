@@ -558,6 +558,7 @@ TEST(List, SaysWhatPlannersPredictorsAndSensorsDo) {
     std::istringstream lines(Sidestep({"list", kind}).out);
     std::istringstream names(Sidestep({"list", kind, "--names"}).out);
     for (std::string line, name; std::getline(lines, line);) {
+      if (line.starts_with("    --set ")) continue;  // of the planner above
       ASSERT_TRUE(std::getline(names, name));
       EXPECT_THAT(line, StartsWith(name + " "));
       EXPECT_GT(line.size(), 35u) << line;
