@@ -36,8 +36,9 @@ constexpr double kTimeEpsilon = 1e-9;  // s; far below a physics step, far above
 constexpr double kPoll_s = 2e-3;       // on a wall clock, how long nobody looks up
 constexpr double kLongestStop_s = 3;   // an arm that is told to hold rests by then
 constexpr double kStill_rad_s = 0.01;
-constexpr double kTick_s = 1.5e-3;    // a robot has looked at what it was told by then
-constexpr double kHandOver_s = 5e-3;  // a plan is with the robot so long before it takes effect
+constexpr double kTick_s = 1.5e-3;      // a robot has looked at what it was told by then
+constexpr double kPlanningShare = 0.9;  // of a cycle in real time; judging the plan is the rest
+constexpr double kHandOver_s = 5e-3;    // a plan is with the robot so long before it takes effect
 
 constexpr const char* kLate = "late";  // the status of a plan that came after its moment
 
@@ -322,10 +323,19 @@ class Loop {
       if (world_.robot->Read().v.cwiseAbs().maxCoeff() > kStill_rad_s) return;
     }
     begun_ = {now_s_, expected, model_->MakeField()};
-    worker_->Begin(
-        [this, task = replanner_.Prepare(EpisodeTime(now_s_), world_.robot->Read(), expected, goal_,
-                                         begun_.field)] { return replanner_.Work(task); });
+    planner::CycleTask task = replanner_.Prepare(EpisodeTime(now_s_), world_.robot->Read(),
+                                                 expected, goal_, begun_.field);
+    if (is_real_time_) task.budget.deadline = DeadlineOf(expected);
+    worker_->Begin([this, task = std::move(task)] { return replanner_.Work(task); });
     if (!is_real_time_) TakeCycle();
+  }
+
+  // Of a cycle that begins now: a plan that is good enough in time is worth more than a better one
+  // that is dropped.
+  static std::chrono::steady_clock::time_point DeadlineOf(HorizonOffset latency) {
+    const std::chrono::duration<double> left(kPlanningShare * latency.seconds() - kHandOver_s);
+    return std::chrono::steady_clock::now() +
+           std::chrono::duration_cast<std::chrono::steady_clock::duration>(left);
   }
 
   // Takes the result of a cycle, if one is there.

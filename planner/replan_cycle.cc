@@ -120,7 +120,10 @@ CycleResult CycleWork::Run() const {
   CycleRecord& record = cycle.record;
   TimedPlan shown = present;
   Clearance clearance;  // of what is shown
-  const auto plan = [&](const PlanRequest& to_plan) {
+  // Once the budget is spent there is still one iteration, so that there is an answer.
+  const auto plan = [&](PlanRequest to_plan) {
+    to_plan.budget = task_.budget;
+    to_plan.budget.iterations = std::max(1, task_.budget.iterations - record.iterations);
     PlanResult result = planner_.Plan(to_plan);
     record.iterations += result.iterations;
     return result;

@@ -9,6 +9,7 @@
 #include "sidestep/core/samples.h"
 #include "sidestep/core/time.h"
 #include "sidestep/core/trajectory.h"
+#include "sidestep/planner/plan_request.h"
 #include "sidestep/planner/planner.h"
 #include "sidestep/sdf/distance_field.h"
 
@@ -38,6 +39,7 @@ struct CycleTask {
   std::shared_ptr<const sdf::DistanceField> field;
   std::optional<TimedPlan> running;  ///< what the robot follows
   bool is_braking = false;           ///< what it follows leads to no goal
+  PlanBudget budget = {};            ///< of all plans of the cycle together
 };
 
 struct CycleResult {

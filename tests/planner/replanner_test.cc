@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -11,6 +13,7 @@
 
 #include "sidestep/core/goal.h"
 #include "sidestep/planner/clearance.h"
+#include "sidestep/planner/first_guess.h"
 #include "sidestep/planner/registry.h"
 #include "tests/support/moving_ball_world.h"
 #include "tests/support/planar_arm.h"
@@ -181,6 +184,45 @@ TEST(Replanner, GoesOnWithThePlanThatRunsIfThePlannerFindsNone) {
   planner.fails = false;
   EXPECT_EQ(loop.Cycle(1, 0.1).record.status, "solved");
   EXPECT_EQ(loop.Cycle(1.1, 0.1).record.reason, "");
+}
+
+// Says how many iterations it may do, and does them.
+class SpendingPlanner final : public Planner {
+ public:
+  SpendingPlanner() : Planner(MakePlanarArm(), Loop::Settings()) {}
+  mutable std::vector<PlanBudget> budgets;
+
+ private:
+  PlanAnswer DoPlan(const PlanRequest& request, PlanJudge&) const override {
+    budgets.push_back(request.budget);
+    return {.trajectory = MakeDirectMotion(request, sidestep::planner::Timing::kWholeTime),
+            .iterations = std::min(30, request.budget.iterations)};
+  }
+};
+
+TEST(Replanner, SharesItsBudgetAmongThePlansOfACycle) {
+  MovingBallWorld world = CrossingBall();
+  const SpendingPlanner planner;
+  Replanner replanner(planner, {.horizon_s = 3, .step_s = 0.1, .q_goal = kGoal});
+  const auto cycle = [&](double now_s) {
+    CycleTask task =
+        replanner.Prepare(EpisodeTime(now_s), {EpisodeTime(now_s), kStart, Eigen::Vector2d::Zero()},
+                          HorizonOffset(0.1), GoalWatch(kGoal, 0), world.MakeField());
+    task.budget.iterations = 40;
+    task.budget.deadline = std::chrono::steady_clock::now() + std::chrono::hours(1);
+    return std::pair(replanner.Work(task), task);
+  };
+  CycleResult first = cycle(0).first;
+  ASSERT_EQ(planner.budgets.size(), 1u);
+  first.plan = TimedPlan{first.record.plan, first.record.plan_start};
+  replanner.Accept(first);
+  // It runs into the ball, and so does what is tried first: another horizon is tried as well.
+  const auto [second, task] = cycle(0.1);
+  ASSERT_EQ(planner.budgets.size(), 3u);
+  EXPECT_EQ(planner.budgets[1].iterations, 40);
+  EXPECT_EQ(planner.budgets[2].iterations, 10);
+  EXPECT_EQ(planner.budgets[2].deadline, task.budget.deadline);
+  EXPECT_EQ(second.record.iterations, 40);
 }
 
 TEST(Replanner, BrakesBeforeWhatComesIfThePlannerFindsNone) {
