@@ -7,6 +7,7 @@
 #include "sidestep/bench/json_text.h"
 #include "sidestep/bench/planner_bench/planner_bench.h"
 #include "sidestep/bench/planner_bench/planner_problems.h"
+#include "sidestep/cli/bench_cycle.h"
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/data_paths.h"
@@ -96,22 +97,10 @@ int BenchPlanners(const PlannerBenchOptions& options) {
   return 0;
 }
 
-}  // namespace
-
-void AddBenchCommand(CommandLine& line) {
-  CLI::App* const bench =
-      line.app.add_subcommand("bench", "Time planners beside each other on this machine");
-  // Not required of CLI11, whose complaint would not name the word that was wrong.
-  bench->require_subcommand(0, 1);
-  bench->callback([bench] {
-    if (!bench->get_subcommands().empty()) return;
-    const auto name = [](const CLI::App* what) { return what->get_name(); };
-    throw InputError("bench", "needs one of " + Joined(bench->get_subcommands({}), ", ", name));
-  });
-
+void AddPlannerBench(CommandLine& line, CLI::App& bench) {
   auto options = std::make_shared<PlannerBenchOptions>();
   CLI::App* const planner =
-      bench->add_subcommand("planner", "CPU time and quality of plans, cold and warm");
+      bench.add_subcommand("planner", "CPU time and quality of plans, cold and warm");
   planner
       ->add_option("--problems", options->problems,
                    "Comma-separated: " + Joined(bench::PlannerProblemNames()) + " [all]")
@@ -142,6 +131,44 @@ void AddBenchCommand(CommandLine& line) {
       "that\n"
       "touch nothing truly there, limits those of them within the robot's limits.");
   planner->callback([&line, options] { line.exit_code = BenchPlanners(*options); });
+}
+
+void AddCycleBench(CommandLine& line, CLI::App& bench) {
+  auto options = std::make_shared<CycleBenchOptions>();
+  CLI::App* const cycle =
+      bench.add_subcommand("cycle", "CPU time of the stages of a scenario's planning cycles");
+  AddScenarioOptions(*cycle, options->scenario);
+  cycle
+      ->add_option("--planners", options->planners,
+                   "Comma-separated: those to set side by side [the scenario's]")
+      ->delimiter(',');
+  cycle->add_option("--runs", options->num_runs, "How often each cycle is timed: the least counts")
+      ->check(NumberFrom(1, 1000))
+      ->capture_default_str();
+  cycle->add_option("--json", options->json, "A file for the table as JSON");
+  cycle->footer(
+      "Runs the scenario in simulation, the planners in turn. From reading the sensor to the "
+      "plan:\n"
+      "sense, map (the distance field of what is known), segment, track, predict, optimise; cycle "
+      "is\n"
+      "their sum. Quantiles are over the cycles of an episode; the first one plans from nothing.");
+  cycle->callback([&line, options] { line.exit_code = BenchCycles(*options); });
+}
+
+}  // namespace
+
+void AddBenchCommand(CommandLine& line) {
+  CLI::App* const bench =
+      line.app.add_subcommand("bench", "Time planners beside each other on this machine");
+  // Not required of CLI11, whose complaint would not name the word that was wrong.
+  bench->require_subcommand(0, 1);
+  bench->callback([bench] {
+    if (!bench->get_subcommands().empty()) return;
+    const auto name = [](const CLI::App* what) { return what->get_name(); };
+    throw InputError("bench", "needs one of " + Joined(bench->get_subcommands({}), ", ", name));
+  });
+  AddPlannerBench(line, *bench);
+  AddCycleBench(line, *bench);
 }
 
 }  // namespace sidestep::cli

@@ -219,12 +219,39 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"BenchOfAnUnknownProblem",
                 {"bench", "planner", "--problems", "hsr,tsr"},
                 {"--problems", "tsr"}},
+        Mistake{"BenchOfCyclesOfNothing", {"bench", "cycle"}, {"SCENARIO"}},
+        Mistake{"BenchOfCyclesOfAnUnknownPlanner",
+                {"bench", "cycle", "hsr_walkway", "--planners", "gpmp,chomp"},
+                {"--planners", "chomp"}},
         Mistake{"BenchOfNoPairs", {"bench", "planner", "--pairs", "0"}, {"--pairs"}},
         Mistake{"ListOfAnUnknownKind", {"list", "wishes"}, {"KIND: must be one of scenarios,"}},
         Mistake{"SensorWithoutItsSettings",
                 {"run", "hsr_walkway", "--set", "sensor.name=depth_camera"},
                 {"sensor.camera: is missing; the sensor 'depth_camera' needs it"}}),
     [](const auto& test) { return std::string(test.param.name); });
+
+TEST(Bench, TimesTheStagesOfEachPlannersCycles) {
+  const TemporaryFolder folder;
+  const std::string file = folder.path() / "rows.json";
+  const Finished finished = Sidestep({"bench", "cycle", "hsr_walkway", "--planners",
+                                      "gpmp_fast,straight_line", "--runs", "1", "--json", file});
+  EXPECT_EQ(finished.exit_code, 0) << finished.err;
+  EXPECT_THAT(finished.out, HasSubstr("gpmp_fast      goal\nstraight_line  collision\n"));
+  const nlohmann::json json = nlohmann::json::parse(std::ifstream(file));
+  ASSERT_EQ(json["rows"].size(), 14u);
+  for (std::size_t planner = 0; planner < 2; ++planner) {
+    double sum_ms = 0;
+    for (std::size_t stage = 0; stage < 6; ++stage) {
+      const nlohmann::json& row = json["rows"][7 * planner + stage];
+      EXPECT_LE(row["median_ms"], row["p99_ms"]) << row;
+      sum_ms += row["first_ms"].get<double>();
+    }
+    const nlohmann::json& whole = json["rows"][7 * planner + 6];
+    EXPECT_EQ(whole["stage"], "cycle");
+    EXPECT_GT(whole["cycles"], 20);
+    EXPECT_NEAR(whole["first_ms"], sum_ms, 1e-9);
+  }
+}
 
 TEST(Bench, PrintsARowForEachPlannerAndStartAndWritesThem) {
   const TemporaryFolder folder;
