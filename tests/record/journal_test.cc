@@ -94,21 +94,29 @@ class JournalFile : public ::testing::Test {
     return error ? 0 : size;
   }
 
+  // Where the parts of the file end: where the next one begins by naming the format.
+  std::vector<std::size_t> PartEnds() const {
+    const std::string bytes = ReadBytes(path_);
+    std::vector<std::size_t> ends;
+    for (std::size_t at = 0; at != std::string::npos;) {
+      at = bytes.find("sidestep journal", at + 1);
+      ends.push_back(std::min(at, bytes.size()));
+    }
+    return ends;
+  }
+
   // Keeps one beginning of it after the other, each in a part of its own. @return the sizes of the
   // file then.
   std::vector<std::size_t> KeepInParts(const Recording& whole, const std::vector<double>& shares) {
     Journal journal(path_, kFacts, [](const std::string& why) { ADD_FAILURE() << why; });
-    std::vector<std::size_t> sizes;
-    for (const double share : shares) {
-      journal.Keep(Beginning(whole, share));
-      const std::size_t before = sizes.empty() ? 0 : sizes.back();
-      WaitUntil([&] { return Size() > before; });
-      // A part is written by one call, or nearly so.
-      std::size_t size = 0;
-      WaitUntil([&] { return size == std::exchange(size, Size()); });
-      sizes.push_back(Size());
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+      journal.Keep(Beginning(whole, shares[i]));
+      WaitUntil([&] { return PartEnds().size() > i && Size() > 0; });
     }
-    return sizes;
+    EXPECT_TRUE(journal.Close());
+    std::vector<std::size_t> ends = PartEnds();
+    EXPECT_EQ(ends.size(), shares.size());
+    return ends;
   }
 
   const TemporaryFolder folder_;
