@@ -45,13 +45,9 @@ PlanAnswer GaussNewtonPlanner::DoPlan(const PlanRequest& request, PlanJudge&) co
 }
 
 PlannerKind GaussNewtonKind() {
-  return {"the solver of the published experiments: full Gauss-Newton steps, no damping",
-          SingleSolveParameters().declared(),
-          [](const robot::RobotModel& robot, const PlannerSettings& settings,
-             const Parameters& parameters) {
-            return std::make_unique<GaussNewtonPlanner>(robot, settings,
-                                                        SingleSolveParameters().Read(parameters));
-          }};
+  return KindOf<GaussNewtonPlanner>(
+      "the solver of the published experiments: full Gauss-Newton steps, no damping",
+      SingleSolveParameters());
 }
 
 }  // namespace sidestep::planner

@@ -46,12 +46,9 @@ std::unique_ptr<TrajectoryOptimizer> GpPlanner::MakeOptimizer(const PlanRequest&
 }
 
 PlannerKind GpmpKind() {
-  return {"trajectory optimisation after GPMP2, with limits, detours and the links kept apart",
-          GpParameters().declared(),
-          [](const robot::RobotModel& robot, const PlannerSettings& settings,
-             const Parameters& parameters) {
-            return std::make_unique<GpPlanner>(robot, settings, GpParameters().Read(parameters));
-          }};
+  return KindOf<GpPlanner>(
+      "trajectory optimisation after GPMP2, with limits, detours and the links kept apart",
+      GpParameters());
 }
 
 }  // namespace sidestep::planner

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sidestep/planner/parameters.h"
@@ -23,5 +24,16 @@ struct PlannerKind {
                                          const Parameters& parameters)>
       make;
 };
+
+/// The kind of a planner that is made of (robot, settings, a struct of parameters).
+/// @param table is borrowed for good.
+template <class Made, class Struct>
+PlannerKind KindOf(std::string meaning, const ParameterTable<Struct>& table) {
+  return {std::move(meaning), table.declared(),
+          [&table](const robot::RobotModel& robot, const PlannerSettings& settings,
+                   const Parameters& parameters) {
+            return std::make_unique<Made>(robot, settings, table.Read(parameters));
+          }};
+}
 
 }  // namespace sidestep::planner

@@ -59,13 +59,9 @@ std::unique_ptr<TrajectoryOptimizer> GpCeresPlanner::MakeOptimizer(
 }
 
 PlannerKind GpmpCeresKind() {
-  return {"the objective and the seeds of gpmp, by Ceres in fewer and smaller residual blocks",
-          GpParameters().declared(),
-          [](const robot::RobotModel& robot, const PlannerSettings& settings,
-             const Parameters& parameters) {
-            return std::make_unique<GpCeresPlanner>(robot, settings,
-                                                    GpParameters().Read(parameters));
-          }};
+  return KindOf<GpCeresPlanner>(
+      "the objective and the seeds of gpmp, by Ceres in fewer and smaller residual blocks",
+      GpParameters());
 }
 
 }  // namespace sidestep::planner

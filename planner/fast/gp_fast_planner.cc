@@ -54,13 +54,9 @@ std::unique_ptr<TrajectoryOptimizer> GpFastPlanner::MakeOptimizer(
 }
 
 PlannerKind GpmpFastKind() {
-  return {"the objective and the seeds of gpmp, by a solver of our own that is many times faster",
-          GpParameters().declared(),
-          [](const robot::RobotModel& robot, const PlannerSettings& settings,
-             const Parameters& parameters) {
-            return std::make_unique<GpFastPlanner>(robot, settings,
-                                                   GpParameters().Read(parameters));
-          }};
+  return KindOf<GpFastPlanner>(
+      "the objective and the seeds of gpmp, by a solver of our own that is many times faster",
+      GpParameters());
 }
 
 }  // namespace sidestep::planner
