@@ -72,14 +72,14 @@ Problem LoadForHardware(const HardwareOptions& options, const DataPaths& paths) 
 }
 
 // Connects, looks, and plans; nothing is sent to the robot.
-int DryRun(const HardwareOptions& options, Problem problem, const DataPaths& paths) {
+int DryRun(const HardwareOptions& options, const Problem& problem, const DataPaths& paths) {
   for (const auto& [flag, is_given] :
        {std::pair("--out", !options.out.empty()), std::pair("--json", options.json)}) {
     if (is_given) throw InputError(flag, "is of a run: --dry-run leaves no results");
   }
   const auto driver = ConnectPanda(options.robot);
   const hardware::RobotSnapshot state = driver->ReadOnce();
-  scenarios::Scenario& scenario = problem.scenario;
+  const scenarios::Scenario& scenario = problem.scenario;
   Eigen::VectorXd q(static_cast<Eigen::Index>(state.q.size()));
   std::copy(state.q.begin(), state.q.end(), q.begin());
   const std::optional<std::string> aside = WhyNotAtStart(q, scenario);
@@ -101,7 +101,7 @@ int DryRun(const HardwareOptions& options, Problem problem, const DataPaths& pat
 int RunOnHardware(const HardwareOptions& options) {
   const DataPaths paths = FindDataPaths();
   Problem problem = LoadForHardware(options, paths);
-  if (options.dry_run) return DryRun(options, std::move(problem), paths);
+  if (options.dry_run) return DryRun(options, problem, paths);
   const bool lockstep = options.clock == "lockstep";
   if (!lockstep && problem.scenario.latency == scenarios::Latency::kNone) {
     throw InputError("replanning.latency", "planning takes time on hardware: charged or measured");
@@ -144,10 +144,11 @@ std::string MoveAlong(hardware::PandaRobot& panda, const Trajectory& way, const 
   panda.AdvanceTo(EpisodeTime(0.01));
   panda.Submit(way, EpisodeTime(0.02));
   const double seconds = way.t_s(way.num_states() - 1);
-  for (double t_s = 0.02; t_s < seconds + 0.5; t_s += 0.02) {
+  const int num_steps = static_cast<int>(std::ceil((seconds + 0.5) / 0.02));
+  for (int step = 1; step < num_steps; ++step) {
     const std::string why_stop = person.WhyStop();
     if (!why_stop.empty()) return why_stop;
-    panda.AdvanceTo(EpisodeTime(t_s));
+    panda.AdvanceTo(EpisodeTime(0.02 * step));
     panda.TakeControlLog();
     panda.TakeAnswerTimes();
   }

@@ -79,7 +79,9 @@ PredictedMaps::PredictedMaps(const OpenLoopExperiment& experiment, const Publish
 }
 
 const sdf::DistanceField& PredictedMaps::At(double speed_m_s, int now, int k) const {
-  return *fields_.at(speed_m_s).at(static_cast<std::size_t>(now * num_states_ + k));
+  return *fields_.at(speed_m_s).at(static_cast<std::size_t>(now) *
+                                       static_cast<std::size_t>(num_states_) +
+                                   static_cast<std::size_t>(k));
 }
 
 }  // namespace sidestep::bench

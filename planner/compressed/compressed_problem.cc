@@ -28,8 +28,8 @@ class CompressedProblem::Rows final : public ceres::CostFunction {
     }
     const int num_blocks = static_cast<int>(parameter_block_sizes().size());
     for (int row = 0; row < num_residuals(); ++row) {
-      const double* const from =
-          &step_.rows[static_cast<std::size_t>((begin_ + row) * owner_.height_)];
+      const double* const from = &step_.rows[static_cast<std::size_t>(begin_ + row) *
+                                             static_cast<std::size_t>(owner_.height_)];
       residuals[row] = from[2 * size_];
       for (int block = 0; block < num_blocks; ++block) {
         if (jacobians[block] == nullptr) continue;
@@ -68,7 +68,8 @@ CompressedProblem::CompressedProblem(TrajectoryObjective& objective, const Eigen
   };
   for (int k = first; k < objective.num_states(); ++k) {
     Step& step = steps_[static_cast<std::size_t>(k - first)];
-    step.rows.assign(static_cast<std::size_t>((2 * size + 1) * height_), 0.0);
+    step.rows.assign(static_cast<std::size_t>(2 * size + 1) * static_cast<std::size_t>(height_),
+                     0.0);
     double* const state = states_.col(k).data();
     if (k > 0) {
       add(std::make_unique<Rows>(*this, step, 0, size, true), {states_.col(k - 1).data(), state});

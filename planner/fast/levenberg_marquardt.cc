@@ -79,7 +79,7 @@ double LevenbergMarquardt::LargestGradient() const {
 void LevenbergMarquardt::ChooseScales() {
   for (int k = 0; k < present_.num_blocks(); ++k) {
     for (int i = 0; i < present_.block_size(); ++i) {
-      scale_[static_cast<std::size_t>(k * present_.stride() + i)] =
+      scale_[present_.Place(k) + static_cast<std::size_t>(i)] =
           1 / (1 + std::sqrt(present_.diagonal(k, i)));
     }
   }
@@ -88,7 +88,7 @@ void LevenbergMarquardt::ChooseScales() {
 void LevenbergMarquardt::ChooseDamping(double radius) {
   for (int k = 0; k < present_.num_blocks(); ++k) {
     for (int i = 0; i < present_.block_size(); ++i) {
-      const auto at = static_cast<std::size_t>(k * present_.stride() + i);
+      const auto at = present_.Place(k) + static_cast<std::size_t>(i);
       const double square = scale_[at] * scale_[at];
       damping_[at] = std::clamp(square * present_.diagonal(k, i), kMinDiagonal, kMaxDiagonal) /
                      (radius * square);
@@ -98,7 +98,7 @@ void LevenbergMarquardt::ChooseDamping(double radius) {
 
 SolveOutcome LevenbergMarquardt::Solve(int max_iterations, double function_tolerance,
                                        Eigen::MatrixXd& states, const PlanBudget& budget) {
-  const int first = objective_.first_free(), D = present_.block_size(), stride = present_.stride(),
+  const int first = objective_.first_free(), D = present_.block_size(),
             num_free = present_.num_blocks();
   objective_.Evaluate(states, present_);
   double cost = present_.cost.total(), least = cost;
@@ -140,7 +140,8 @@ SolveOutcome LevenbergMarquardt::Solve(int max_iterations, double function_toler
 
     for (int k = 0; k < num_free; ++k) {
       for (int i = 0; i < D; ++i) {
-        x_next(i, first + k) = x(i, first + k) + step_[static_cast<std::size_t>(k * stride + i)];
+        x_next(i, first + k) =
+            x(i, first + k) + step_[present_.Place(k) + static_cast<std::size_t>(i)];
       }
     }
     if (!candidate_) candidate_.emplace(objective_.MakeQuadratic());

@@ -13,7 +13,7 @@ struct Chain {
   int num_blocks = 0, block_size = 0, stride = 0;
 };
 
-/// @param factor, @param inverse room for as many numbers as `panels` and a vector of the chain.
+/// @param factor,inverse room for as many numbers as `panels` and a vector of the chain.
 /// @param rhs one block longer than a vector of the chain, that one zero; the solution on return.
 /// @return false unless the matrix is positive definite.
 bool Solve(const Chain& chain, const double* panels, const double* damping, double* factor,

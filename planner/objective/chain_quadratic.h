@@ -25,16 +25,20 @@ class ChainQuadratic {
   int block_size() const { return 2 * num_joints_; }
   /// Numbers from one block of a chain's vector to the next: at least n + PaddedRows(n).
   int stride() const { return stride_; }
-  std::size_t vector_size() const { return static_cast<std::size_t>(num_blocks_ * stride_); }
+  std::size_t vector_size() const { return Place(num_blocks_); }
 
   PlanCost cost;
-  double* gradient(int k) { return &gradient_[static_cast<std::size_t>(k * stride_)]; }
-  const double* gradient(int k) const { return &gradient_[static_cast<std::size_t>(k * stride_)]; }
+  double* gradient(int k) { return &gradient_[Place(k)]; }
+  const double* gradient(int k) const { return &gradient_[Place(k)]; }
   /// Block column k: 2n columns, each of 2 stride() numbers, first those of block k, then those of
   /// block k + 1.
   double* panel(int k) { return &panels_[static_cast<std::size_t>(k) * panel_size()]; }
   const double* panel(int k) const { return &panels_[static_cast<std::size_t>(k) * panel_size()]; }
-  std::size_t panel_size() const { return static_cast<std::size_t>(block_size() * 2 * stride_); }
+  std::size_t panel_size() const { return Place(2) * static_cast<std::size_t>(block_size()); }
+  /// Of block k in a chain's vector.
+  std::size_t Place(int k) const {
+    return static_cast<std::size_t>(k) * static_cast<std::size_t>(stride_);
+  }
 
   /// The diagonal entry i of block k.
   double diagonal(int k, int i) const { return panel(k)[i * 2 * stride_ + i]; }

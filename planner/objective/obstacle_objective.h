@@ -32,12 +32,18 @@ class ObstacleQuadratics {
   double& cost(int c) { return costs_[static_cast<std::size_t>(c)]; }
   double cost(int c) const { return costs_[static_cast<std::size_t>(c)]; }
   /// n numbers and zeros.
-  double* gradient(int c) { return &gradients_[static_cast<std::size_t>(c * rows_)]; }
-  const double* gradient(int c) const { return &gradients_[static_cast<std::size_t>(c * rows_)]; }
+  double* gradient(int c) {
+    return &gradients_[static_cast<std::size_t>(c) * static_cast<std::size_t>(rows_)];
+  }
+  const double* gradient(int c) const {
+    return &gradients_[static_cast<std::size_t>(c) * static_cast<std::size_t>(rows_)];
+  }
   /// n columns, each of n numbers and zeros.
-  double* hessian(int c) { return &hessians_[static_cast<std::size_t>(c * n_ * rows_)]; }
+  double* hessian(int c) {
+    return &hessians_[static_cast<std::size_t>(c) * static_cast<std::size_t>(n_ * rows_)];
+  }
   const double* hessian(int c) const {
-    return &hessians_[static_cast<std::size_t>(c * n_ * rows_)];
+    return &hessians_[static_cast<std::size_t>(c) * static_cast<std::size_t>(n_ * rows_)];
   }
   ObstacleQuadratic Get(int c) const;
 
