@@ -42,17 +42,11 @@ constexpr double kHandOver_s = 5e-3;    // a plan is with the robot so long befo
 
 constexpr const char* kLate = "late";  // the status of a plan that came after its moment
 
-constexpr const char* kStages[] = {"sense", "map", "segment", "track", "predict", "optimise"};
-
 StageTimes NoTimes() {
   StageTimes times;
-  for (const char* const stage : kStages) times[stage];
+  for (const char* const stage : kCycleStages) times[stage];
   times["cycle"];
   return times;
-}
-
-void Measure(record::Recording& recording) {
-  for (const Metric& metric : Metrics()) recording.metrics[metric.name] = metric.compute(recording);
 }
 
 // The trace tells how its episode ended, as the result does.
@@ -376,10 +370,10 @@ class Loop {
     const sdf::WorldModelTimes map = model_->TakeTimes();
     const double seconds[] = {sense_s_,    map.map_s,     map.segment_s,
                               map.track_s, map.predict_s, cycle.optimise_s};
-    static_assert(std::size(seconds) == std::size(kStages));
+    static_assert(std::size(seconds) == std::size(kCycleStages));
     double sum = 0;
-    for (std::size_t i = 0; i < std::size(kStages); ++i) {
-      result_.times[kStages[i]].push_back(seconds[i]);
+    for (std::size_t i = 0; i < std::size(kCycleStages); ++i) {
+      result_.times[kCycleStages[i]].push_back(seconds[i]);
       sum += seconds[i];
     }
     result_.times["cycle"].push_back(sum);
@@ -391,7 +385,7 @@ class Loop {
   EpisodeResult Finish() {
     result_.recording = recorder_.Take();
     const record::Recording& recording = result_.recording;
-    Measure(result_.recording);
+    ComputeMetrics(result_.recording);
     result_.outcome = is_aborted_ ? Outcome::kAborted : Judge(recording, goal_.dwelt().has_value());
     if (!is_aborted_ && recording.metrics.at("plans_accepted") == 0) {
       result_.reason = WhyNoPlan(recording);
@@ -499,7 +493,7 @@ EpisodeResult CutOffEpisode(record::Recording recording) {
   result.reason = "its process ended before the episode did";
   result.times = NoTimes();
   result.recording = std::move(recording);
-  Measure(result.recording);
+  ComputeMetrics(result.recording);
   TellInHeader(result);
   return result;
 }

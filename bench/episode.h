@@ -31,8 +31,12 @@ using FieldObserver =
     std::function<void(EpisodeTime t, std::shared_ptr<const sdf::DistanceField> field,
                        const robot::WorldTruth* truth)>;
 
-/// CPU seconds by stage ("sense", "map", "segment", "track", "predict", "optimise", "cycle"), one
-/// entry a planning cycle. What sensing and mapping cost since the cycle before is counted in.
+/// The stages of a planning cycle, in their order.
+inline constexpr const char* kCycleStages[] = {"sense", "map",     "segment",
+                                               "track", "predict", "optimise"};
+
+/// CPU seconds by stage, and of all of them as "cycle", one entry a planning cycle. What sensing
+/// and mapping cost since the cycle before is counted in.
 using StageTimes = std::map<std::string, std::vector<double>>;
 
 struct EpisodeResult {

@@ -22,14 +22,8 @@ FreePath SearchFreePath(const scenarios::Scenario& scenario, const robot::RobotM
   const sdf::ShapeField field =
       TrueWorld(scenario, scenario.epsilon_m + robot.largest_sphere_radius_m());
   const auto planner = MakePlanner(scenario, robot);
-  planner::PlanRequest request;
+  planner::PlanRequest request = RequestOf(scenario, HorizonOf(scenario, *planner));
   request.field = &field;
-  request.step_s = scenario.step_s;
-  request.num_states =
-      static_cast<int>(std::lround(HorizonOf(scenario, *planner) / scenario.step_s)) + 1;
-  request.q_start = scenario.q_start;
-  request.v_start = Eigen::VectorXd::Zero(robot.num_joints());
-  request.q_goal = scenario.q_goal;
   request.num_fixed =
       1 + static_cast<int>(std::ceil(scenario.longest_latency_s() / scenario.step_s - 1e-9));
 

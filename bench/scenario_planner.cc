@@ -102,6 +102,16 @@ std::unique_ptr<planner::Planner> MakePlanner(const scenarios::Scenario& scenari
                               ParametersOf(scenario));
 }
 
+planner::PlanRequest RequestOf(const scenarios::Scenario& scenario, double horizon_s) {
+  planner::PlanRequest request;
+  request.step_s = scenario.step_s;
+  request.num_states = static_cast<int>(std::lround(horizon_s / scenario.step_s)) + 1;
+  request.q_start = scenario.q_start;
+  request.v_start = Eigen::VectorXd::Zero(scenario.q_start.size());
+  request.q_goal = scenario.q_goal;
+  return request;
+}
+
 double HorizonOf(const scenarios::Scenario& scenario, const planner::Planner& planner) {
   constexpr double kRounding = 1e-9;
   const auto steps = [&](double time_s) { return std::ceil(time_s / scenario.step_s - kRounding); };

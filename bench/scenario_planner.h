@@ -26,6 +26,9 @@ planner::Parameters ParametersOf(const scenarios::Scenario& scenario);
 std::unique_ptr<planner::Planner> MakePlanner(const scenarios::Scenario& scenario,
                                               const robot::RobotModel& robot);
 
+/// From start to goal of the scenario, at rest in both, over a horizon; without a field.
+planner::PlanRequest RequestOf(const scenarios::Scenario& scenario, double horizon_s);
+
 /// How far ahead plans reach [s]: the scenario's horizon or, where its limits do not let the direct
 /// motion from start to goal be over by then, as many steps as that takes.
 double HorizonOf(const scenarios::Scenario& scenario, const planner::Planner& planner);

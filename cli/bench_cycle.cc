@@ -13,15 +13,12 @@
 #include "sidestep/cli/option_lists.h"
 #include "sidestep/cli/wiring.h"
 #include "sidestep/core/atomic_file.h"
+#include "sidestep/core/input_error.h"
 #include "sidestep/core/number_text.h"
 #include "sidestep/planner/registry.h"
 
 namespace sidestep::cli {
 namespace {
-
-// The order of a cycle, then all of it.
-constexpr const char* kStages[] = {"sense",   "map",      "segment", "track",
-                                   "predict", "optimise", "cycle"};
 
 // One planner with the scenario. Runs are equal but for their times, of which the least counts.
 struct Bench {
@@ -78,8 +75,14 @@ std::vector<Bench> MakeBenches(const CycleBenchOptions& options, const DataPaths
   std::vector<Bench> benches;
   for (const std::string& name : names) {
     Overrides overrides = ParseOverrides(options.scenario);
-    if (!name.empty()) overrides.settings["planner.name"] = name;
+    if (!name.empty() && !overrides.settings.emplace("planner.name", name).second) {
+      throw InputError("--set planner.name", "is given by --planners as well");
+    }
     Problem problem = LoadProblem(options.scenario.scenario, overrides, paths);
+    if (problem.scenario.latency == scenarios::Latency::kMeasured) {
+      throw WrongValue(problem.scenario, "replanning.latency",
+                       "is measured: no two runs have the same cycles to time");
+    }
     const std::string planner = problem.scenario.planner;
     benches.push_back({.planner = planner, .problem = std::move(problem)});
   }
@@ -102,11 +105,12 @@ int BenchCycles(const CycleBenchOptions& options) {
   Print("{:<14} {:<9} {:>6} {:>9} {:>9} {:>9} {:>9}\n", "planner", "stage", "cycles", "first ms",
         "median", "p95", "p99");
   for (const Bench& bench : benches) {
-    for (const char* const stage : kStages) {
-      const Row row = RowOf(bench, stage);
+    const auto tell = [&](const Row& row) {
       PrintRow(row);
       json["rows"].push_back(JsonOf(row));
-    }
+    };
+    for (const char* const stage : bench::kCycleStages) tell(RowOf(bench, stage));
+    tell(RowOf(bench, "cycle"));
   }
   for (const Bench& bench : benches) Print("{:<14} {}\n", bench.planner, bench.outcome);
   if (!options.json.empty()) WriteFile(options.json, bench::JsonText(json));

@@ -34,8 +34,8 @@ bench::EpisodeWorld WorldOf(const scenarios::Scenario& scenario, const robot::Ro
 ServerTrace::ServerTrace(const std::string& out, int number, const scenarios::Scenario& scenario,
                          const robot::RobotModel& robot, const std::string& model_xml,
                          const bench::RunIdentity& identity)
-    : out_(MakeOutFolder(out, {"trace.h5", kJournalName})),
-      path_(out_ + "/trace" + (number > 1 ? "_" + std::to_string(number) : "") + ".h5"),
+    : name_("trace" + (number > 1 ? "_" + std::to_string(number) : "") + ".h5"),
+      out_(MakeOutFolder(out, {name_, kJournalName})),
       identity_(identity),
       recorder_(scenario, robot, WorldOf(scenario, robot, model_xml)),
       journal_(out_ + "/" + kJournalName, Provenance(identity),
@@ -59,12 +59,11 @@ std::string ServerTrace::Write() {
   record::Recording recording = recorder_.Take();
   recording.header["knowledge"] = "robot server";  // nobody planned here
   AddProvenance(identity_, recording);
-  for (const bench::Metric& metric : bench::Metrics()) {
-    recording.metrics[metric.name] = metric.compute(recording);
-  }
-  record::WriteRecording(recording, path_);
+  bench::ComputeMetrics(recording);
+  std::string path = out_ + "/" + name_;
+  record::WriteRecording(recording, path);
   journal_.Remove();
-  return path_;
+  return path;
 }
 
 }  // namespace sidestep::cli

@@ -31,7 +31,7 @@ class ServerTrace {
   std::string Write();
 
  private:
-  const std::string out_, path_;
+  const std::string name_, out_;
   const bench::RunIdentity identity_;
   bench::EpisodeRecorder recorder_;
   record::Journal journal_;

@@ -3,15 +3,14 @@
 #include <ceres/solver.h>
 
 namespace sidestep::planner {
-
 namespace {
 
-// Ends a solve, with the best so far, where a budget of another kind than iterations is spent.
+// Ends a solve, with the best so far, where time is up.
 class BudgetWatch final : public ceres::IterationCallback {
  public:
   explicit BudgetWatch(const PlanBudget& budget) : budget_(budget) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
-    return budget_.IsSpent(0) ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+    return budget_.IsTimeUp() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 
  private:

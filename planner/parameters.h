@@ -29,7 +29,8 @@ struct Parameter {
 
 /// "number", "whole number", "true or false", "word".
 std::string TypeOf(const Parameter& parameter);
-/// "0.05", "20 to 100", ...: what a value may be; empty if it may be anything of its type.
+/// "from 0 to 100", "one of a, b", ...: what a value may be; empty if it may be anything of its
+/// type.
 std::string BoundsOf(const Parameter& parameter);
 /// As a scenario file holds it.
 std::string ToText(const ParameterValue& value);

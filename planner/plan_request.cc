@@ -40,7 +40,11 @@ bool IsAsFixed(const PlanRequest& request, const Trajectory& trajectory, int k) 
 }  // namespace
 
 bool PlanBudget::IsSpent(int iterations_done) const {
-  return iterations_done >= iterations || (stop != nullptr && stop->load()) ||
+  return iterations_done >= iterations || IsTimeUp();
+}
+
+bool PlanBudget::IsTimeUp() const {
+  return (stop != nullptr && stop->load()) ||
          (deadline && std::chrono::steady_clock::now() >= *deadline);
 }
 

@@ -24,8 +24,10 @@ struct PlanBudget {
   /// Borrowed. Once true, what was found so far is the answer.
   const std::atomic<bool>* stop = nullptr;
 
-  /// Whether to come to an end, after so many iterations.
+  /// Whether to come to an end, after so many iterations or because the time is up.
   bool IsSpent(int iterations_done) const;
+  /// The same whatever has been done: the deadline has come, or somebody says stop.
+  bool IsTimeUp() const;
 };
 
 /// Support states k = 0 ... num_states-1 at start + k step. References are borrowed for the call.

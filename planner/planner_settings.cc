@@ -31,4 +31,10 @@ bool KeepsLimits(const LimitUse& use, const PlannerSettings& settings) {
           use.acceleration <= kWhole * settings.acceleration_scale);
 }
 
+bool KeepsWholeLimits(const LimitUse& use, const PlannerSettings& settings) {
+  return (!settings.position_limits || use.position <= 1) &&
+         (!settings.velocity_limits || use.velocity <= 1) &&
+         (!settings.acceleration_limits || use.acceleration <= 1);
+}
+
 }  // namespace sidestep::planner

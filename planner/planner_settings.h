@@ -24,4 +24,7 @@ void CheckPlannerSettings(const PlannerSettings& settings);
 /// scaled ones of the kinds that are switched on, but for a thousandth.
 bool KeepsLimits(const LimitUse& use, const PlannerSettings& settings);
 
+/// The same of the robot's own limits, unscaled and to the last bit.
+bool KeepsWholeLimits(const LimitUse& use, const PlannerSettings& settings);
+
 }  // namespace sidestep::planner

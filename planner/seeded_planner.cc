@@ -75,10 +75,7 @@ class SeededPlanner::Search {
 };
 
 bool SeededPlanner::IsWithinLimits(const Verdict& verdict) const {
-  const LimitUse& use = verdict.limit_use;
-  return (!settings().position_limits || use.position <= 1) &&
-         (!settings().velocity_limits || use.velocity <= 1) &&
-         (!settings().acceleration_limits || use.acceleration <= 1);
+  return KeepsWholeLimits(verdict.limit_use, settings());
 }
 
 bool SeededPlanner::IsBetter(const Verdict& a, const Verdict& b) const {

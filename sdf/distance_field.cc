@@ -30,6 +30,19 @@ class AskingSlice final : public FieldSlice {
 
 }  // namespace
 
+void DistanceField::SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime t,
+                               DistanceSamples& samples) const {
+  samples.distance_m.resize(p_WQ.cols());
+  samples.gradient_W.resize(3, p_WQ.cols());
+  samples.num_outside = 0;
+  for (Eigen::Index s = 0; s < p_WQ.cols(); ++s) {
+    const DistanceSample sample = Sample(p_WQ.col(s), t);
+    samples.distance_m(s) = sample.distance_m;
+    samples.gradient_W.col(s) = sample.gradient_W;
+    samples.num_outside += sample.in_grid ? 0 : 1;
+  }
+}
+
 std::unique_ptr<const FieldSlice> DistanceField::At(EpisodeTime t) const {
   return std::make_unique<AskingSlice>(*this, t);
 }

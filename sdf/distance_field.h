@@ -51,9 +51,10 @@ class DistanceField {
   /// @param t    time since the episode began, never an offset from "now".
   virtual DistanceSample Sample(const Eigen::Vector3d& p_WQ, EpisodeTime t) const = 0;
 
-  /// Samples S points at the same time; sizes `samples` as needed. Equal to S single calls.
+  /// Samples S points at the same time; sizes `samples` as needed. Equal to S single calls, which
+  /// is what it does unless a field has a faster way.
   virtual void SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime t,
-                          DistanceSamples& samples) const = 0;
+                          DistanceSamples& samples) const;
 
   /// The field at time `t`. The field must outlive it.
   virtual std::unique_ptr<const FieldSlice> At(EpisodeTime t) const;

@@ -20,4 +20,8 @@ constexpr Metric kMetrics[] = {
 
 std::span<const Metric> Metrics() { return kMetrics; }
 
+void ComputeMetrics(record::Recording& recording) {
+  for (const Metric& metric : Metrics()) recording.metrics[metric.name] = metric.compute(recording);
+}
+
 }  // namespace sidestep::bench

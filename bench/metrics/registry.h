@@ -19,4 +19,7 @@ struct Metric {
 /// Every metric, in the order of reports. To add one: metrics.def.
 std::span<const Metric> Metrics();
 
+/// Fills in all of them.
+void ComputeMetrics(record::Recording& recording);
+
 }  // namespace sidestep::bench

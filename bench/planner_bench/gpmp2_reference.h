@@ -65,19 +65,6 @@ class SteppedField final : public sdf::DistanceField {
     return {sample.distance_m, sample.gradient, true};
   }
 
-  void SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime t,
-                  sdf::DistanceSamples& samples) const override {
-    samples.distance_m.resize(p_WQ.cols());
-    samples.gradient_W.resize(3, p_WQ.cols());
-    samples.num_outside = 0;
-    for (Eigen::Index s = 0; s < p_WQ.cols(); ++s) {
-      const sdf::DistanceSample sample = Sample(p_WQ.col(s), t);
-      samples.distance_m(s) = sample.distance_m;
-      samples.gradient_W.col(s) = sample.gradient_W;
-      samples.num_outside += !sample.in_grid;
-    }
-  }
-
   std::unique_ptr<const sdf::FieldSlice> At(EpisodeTime t) const override {
     return std::make_unique<sdf::PlacedComposite>(GridAt(t), std::vector<sdf::PlacedObject>{},
                                                   max_distance_m());

@@ -1,9 +1,10 @@
 #include "sidestep/bench/planner_bench/hit_pairs.h"
 
-#include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <variant>
 
+#include "sidestep/bench/scenario_planner.h"
 #include "sidestep/bench/true_world.h"
 #include "sidestep/core/random.h"
 #include "sidestep/core/trajectory.h"
@@ -44,13 +45,8 @@ class Draw {
     still.moving_obstacles.clear();
     const auto still_world = TrueWorld(still, 1);
 
-    planner::PlanRequest request;
-    request.step_s = task_.step_s;
-    request.num_states = static_cast<int>(std::lround(task_.horizon_s / task_.step_s)) + 1;
-    request.q_start = task_.q_start;
-    request.v_start = Eigen::VectorXd::Zero(robot_.num_joints());
-    request.q_goal = task_.q_goal;
-    const Trajectory direct = planner::MakeDirectMotion(request, planner::Timing::kWholeTime);
+    const Trajectory direct =
+        planner::MakeDirectMotion(RequestOf(task_, task_.horizon_s), planner::Timing::kWholeTime);
     const auto clearance_m = [&](const sdf::ShapeField& field, double from_s, double to_s) {
       return planner::MeasureClearance(robot_, field, direct, EpisodeTime(0), EpisodeTime(from_s),
                                        EpisodeTime(to_s))

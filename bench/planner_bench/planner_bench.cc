@@ -68,12 +68,6 @@ class TaskBench {
   Measured cold, warm_2_cm, warm_same;
 };
 
-bool IsWithinLimits(const planner::LimitUse& use, const planner::PlannerSettings& settings) {
-  return (!settings.position_limits || use.position <= 1) &&
-         (!settings.velocity_limits || use.velocity <= 1) &&
-         (!settings.acceleration_limits || use.acceleration <= 1);
-}
-
 }  // namespace
 
 std::string ToString(PlanStart start) {
@@ -119,7 +113,7 @@ std::vector<PlannerBenchRow> RunPlannerBench(const PlannerProblem& problem,
         clearance_m.push_back(one.plan.clearance.least_m);
         row.num_free += one.is_free;
         row.num_within_limits +=
-            one.is_free && IsWithinLimits(one.plan.limit_use, problem.settings);
+            one.is_free && planner::KeepsWholeLimits(one.plan.limit_use, problem.settings);
       }
       if (row.num_tasks == 0) continue;
       row.cpu_median_ms = Quantile(cpu_ms, 0.5);

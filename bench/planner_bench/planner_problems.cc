@@ -1,6 +1,5 @@
 #include "sidestep/bench/planner_bench/planner_problems.h"
 
-#include <cmath>
 #include <stdexcept>
 #include <variant>
 
@@ -38,16 +37,6 @@ std::vector<PairProblem> PairProblems() {
        Box{{0.15, 0.15, 1.9}},
        -0.05},
   };
-}
-
-planner::PlanRequest RequestOf(const scenarios::Scenario& scenario) {
-  planner::PlanRequest request;
-  request.step_s = scenario.step_s;
-  request.num_states = static_cast<int>(std::lround(scenario.horizon_s / scenario.step_s)) + 1;
-  request.q_start = scenario.q_start;
-  request.v_start = Eigen::VectorXd::Zero(scenario.q_start.size());
-  request.q_goal = scenario.q_goal;
-  return request;
 }
 
 // The cells whose centres lie in what stands still.
@@ -101,7 +90,7 @@ PlannerProblem MakePairs(const PairProblem& pairs, const std::string& models_dir
     auto& motion = std::get<scenarios::LinearMotion>(moved.motion);
     motion.start_m += kMoved_m * motion.direction;
     PlannerTask& one = problem.tasks.emplace_back();
-    one.request = RequestOf(task);
+    one.request = RequestOf(task, task.horizon_s);
     one.field = field_of(task.moving_obstacles.front());
     one.moved_field = field_of(moved);
     one.truth = std::make_shared<const sdf::ShapeField>(TrueWorld(task, clamp_m));

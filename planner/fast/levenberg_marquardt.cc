@@ -112,7 +112,7 @@ SolveOutcome LevenbergMarquardt::Solve(int max_iterations, double function_toler
 
   SolveOutcome outcome;
   for (;; ++outcome.iterations) {
-    if (outcome.iterations >= max_iterations || budget.IsSpent(0)) return outcome;
+    if (outcome.iterations >= max_iterations || budget.IsTimeUp()) return outcome;
     if ((is_new && LargestGradient() <= kGradientTolerance) || radius < kMinRadius) break;
     if (ending_ == Ending::kSooner && is_new &&
         objective_.MostDecrease(present_) <= function_tolerance * cost) {

@@ -71,16 +71,6 @@ class FalseField final : public sdf::DistanceField {
     sample.gradient_W = turn_ * sample.gradient_W;
     return sample;
   }
-  void SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime t,
-                  sdf::DistanceSamples& samples) const override {
-    samples.distance_m.resize(p_WQ.cols());
-    samples.gradient_W.resize(3, p_WQ.cols());
-    for (Eigen::Index s = 0; s < p_WQ.cols(); ++s) {
-      const sdf::DistanceSample sample = Sample(p_WQ.col(s), t);
-      samples.distance_m(s) = sample.distance_m;
-      samples.gradient_W.col(s) = sample.gradient_W;
-    }
-  }
   double max_distance_m() const override { return kClamp_m; }
 
  private:

@@ -24,18 +24,6 @@ class BallField final : public sdf::DistanceField {
     return {norm - radius_m_, p_OQ_W / norm, true};
   }
 
-  void SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime t,
-                  sdf::DistanceSamples& samples) const override {
-    samples.distance_m.resize(p_WQ.cols());
-    samples.gradient_W.resize(3, p_WQ.cols());
-    samples.num_outside = 0;
-    for (Eigen::Index s = 0; s < p_WQ.cols(); ++s) {
-      const sdf::DistanceSample sample = Sample(p_WQ.col(s), t);
-      samples.distance_m(s) = sample.distance_m;
-      samples.gradient_W.col(s) = sample.gradient_W;
-    }
-  }
-
   double max_distance_m() const override { return max_m_; }
 
  private:
