@@ -68,10 +68,14 @@ add_custom_target(threaded_tests)
 # in the asan preset.
 add_custom_target(unit_tests)
 
+# Sanitized programs take long to start, and there are thousands of cases.
+option(SIDESTEP_WHOLE_TEST_PROGRAMS "ctest runs test programs, not each of their cases" OFF)
+
 # sidestep_test(<folder>/<name>_test [SOURCES <further file>...] DEPENDS <target>...
 #               [SLOW | THREADED])
 #
-# Builds tests/<folder>/<name>_test.cc; ctest runs each of its cases. SLOW cases carry the label
+# Builds tests/<folder>/<name>_test.cc; ctest runs each of its cases, or the whole program at once with
+# SIDESTEP_WHOLE_TEST_PROGRAMS. SLOW cases carry the label
 # "slow", which `./dev test` leaves out and `./dev test --all` runs. THREADED ones, which start
 # threads, carry the label "threaded", and `./dev test --all` runs them under the thread sanitizer.
 # Other cases in the folder of a module carry the label "unit".
@@ -98,6 +102,11 @@ function(sidestep_test path)
   if(TARGET sidestep::${folder} AND NOT ARG_SLOW)
     add_dependencies(unit_tests ${target})
   endif()
-  gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60 DISCOVERY_MODE PRE_TEST
-                       PROPERTIES ${properties})
+  if(SIDESTEP_WHOLE_TEST_PROGRAMS)
+    add_test(NAME ${target} COMMAND ${target})
+    set_tests_properties(${target} PROPERTIES ${properties})
+  else()
+    gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60 DISCOVERY_MODE PRE_TEST
+                         PROPERTIES ${properties})
+  endif()
 endfunction()

@@ -1,7 +1,7 @@
 # Precompiled headers: what nearly every source file includes is read once a build, not once a file.
 #
 # Only headers from outside the tree, which do not change while one works. They must hide no missing
-# include: the presets asan and tsan compile without them, as does clang-tidy.
+# include: the preset tsan compiles without them, as does clang-tidy.
 include_guard()
 
 option(SIDESTEP_PRECOMPILE_HEADERS "Precompile the standard library, Eigen and the test framework" ON)

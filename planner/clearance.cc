@@ -38,7 +38,7 @@ class Moments {
   EpisodeTime Time(int i) const {
     return from_ + HorizonOffset(std::min(duration_s_, i * step_s_));
   }
-  void Configuration(int i, Eigen::Ref<Eigen::VectorXd> q) {
+  void Configuration(int i, Eigen::VectorXd& q) {
     SampleInto(trajectory_, Time(i) - start_, q, v_, a_);
   }
   /// The same to rounding and sooner, for i that do not fall.

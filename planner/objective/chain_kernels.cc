@@ -104,7 +104,8 @@ bool FactorPanel(const Sizes& chain, const double* damping, double* C, double* i
     // Of the vector that row j lies in, what is solved stays as it is.
     const double factor = rhs[j] * inverse[j];
     const int first = FirstRowOfVector(j);
-    const auto below_j = hn::Not(hn::FirstN(d, static_cast<std::size_t>(j - first + 1)));
+    const auto below_j =
+        hn::Not(hn::FirstN(d, static_cast<std::size_t>(j) - static_cast<std::size_t>(first) + 1));
     const V taken = hn::Mul(hn::Load(d, column + first), hn::Set(d, factor));
     hn::Store(hn::Sub(hn::Load(d, rhs + first), hn::IfThenElseZero(below_j, taken)), d,
               rhs + first);

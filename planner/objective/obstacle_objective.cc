@@ -32,7 +32,8 @@ void ObstacleObjective::Evaluate(const Eigen::MatrixXd& q,
     const int size = std::min(ArmGroup::kSize, count - begin);
     group_.Place(q.middleCols(begin, size));
     for (int lane = 0; lane < size; ++lane) {
-      group_.Sample(lane, *slices[static_cast<std::size_t>(begin + lane)]);
+      group_.Sample(lane,
+                    *slices[static_cast<std::size_t>(begin) + static_cast<std::size_t>(lane)]);
     }
     obstacle_kernels::ComputeTerms(group_.arm(), group_.axes_8(), group_.centers_8(),
                                    group_.samples_8(), terms_8_.data());

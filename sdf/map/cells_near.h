@@ -18,7 +18,7 @@ template <class Visitor>
 void VisitFilledCells(const GridSpec& grid_W, const Shape& shape, const Pose& X_WO, CellRule rule,
                       double skin_m, const Visitor& visit) {
   const Eigen::Matrix3d R_WO = X_WO.rotation().toRotationMatrix();
-  const Eigen::Vector3d p_WO = X_WO.translation();
+  const Eigen::Vector3d& p_WO = X_WO.translation();
   const Eigen::Vector3d half_W =
       R_WO.cwiseAbs() * HalfExtents(shape) + Eigen::Vector3d::Constant(skin_m + grid_W.cell_m);
   std::array<int, 3> first = grid_W.CellOf(p_WO - half_W);
