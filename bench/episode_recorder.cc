@@ -76,7 +76,7 @@ EpisodeRecorder::EpisodeRecorder(const scenarios::Scenario& scenario,
     : robot_(robot), recording_(BeginRecording(scenario, robot, world)) {}
 
 void EpisodeRecorder::Keep(ControlSample tick) {
-  recording_.p_WTool.push_back(robot_.ComputeLinkPoses(tick.q_command).back().translation());
+  recording_.p_WTool.push_back(robot_.ComputeToolPose(tick.q_command).translation());
   recording_.control.push_back(std::move(tick));
 }
 

@@ -1,44 +1,39 @@
 #include "sidestep/control/arm_capsules.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace sidestep::control {
 
 ArmCapsules::ArmCapsules(const robot::RobotModel& robot)
     : num_joints_(robot.num_joints()),
       size_(static_cast<int>(robot.capsules().size())),
-      dh_{},
+      rows_(robot.kinematics().rows()),
       R_WB_(robot.X_WB().rotation().toRotationMatrix()),
       p_WB_(robot.X_WB().translation()) {
-  std::copy(robot.dh().begin(), robot.dh().end(), dh_.begin());
-  std::copy(robot.capsules().begin(), robot.capsules().end(), capsules_.begin());
+  for (std::size_t k = 0; k < robot.capsules().size(); ++k) {
+    const robot::CollisionCapsule& capsule = robot.capsules()[k];
+    const robot::LinkOnRow& link = robot.kinematics().link(capsule.link);
+    capsules_[k] = {link.row, link.OnRow(capsule.p_LA), link.OnRow(capsule.p_LB), capsule.radius_m};
+  }
 }
 
 void ArmCapsules::Place(const JointVector& q, All& placed) const noexcept {
-  std::array<Eigen::Matrix3d, kMaxJoints + 1> R;  // of the base, then after each row
-  std::array<Eigen::Vector3d, kMaxJoints + 1> p;
-  R[0] = R_WB_;
-  p[0] = p_WB_;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(num_joints_); ++i) {
-    const robot::DhRow& row = dh_[i];
-    const double angle = q(static_cast<Eigen::Index>(i)) + row.theta_rad;
-    const double c = std::cos(angle), s = std::sin(angle);
-    const double ca = std::cos(row.alpha_rad), sa = std::sin(row.alpha_rad);
-    const Eigen::Vector3d x = c * R[i].col(0) + s * R[i].col(1);  // after Rz
-    const Eigen::Vector3d y = c * R[i].col(1) - s * R[i].col(0);
-    const Eigen::Vector3d z = R[i].col(2);
-    p[i + 1] = p[i] + row.d_m * z + row.a_m * x;
-    R[i + 1].col(0) = x;
-    R[i + 1].col(1) = ca * y + sa * z;
-    R[i + 1].col(2) = ca * z - sa * y;
+  // Entry 0 is the base, entry i + 1 is row i.
+  std::array<robot::RowPlace, robot::RobotModel::kMaxRows + 1> places;
+  const auto at = [&places](int row) -> const robot::RowPlace& {
+    const int entry = row + 1;
+    return places[static_cast<std::size_t>(entry)];
+  };
+  places[0].R_WK = R_WB_;
+  places[0].p_WK = p_WB_;
+  std::size_t entry = 0;
+  for (const robot::KinematicRow& row : rows_) {
+    const robot::RowPlace& parent = at(row.parent);
+    PlaceRow(row, parent.R_WK, parent.p_WK, row.PositionOf(q(row.coordinate)), places[++entry]);
   }
   for (std::size_t k = 0; k < static_cast<std::size_t>(size_); ++k) {
-    const robot::CollisionCapsule& capsule = capsules_[k];
-    const int after_row = capsule.link + 1;
-    const auto frame = static_cast<std::size_t>(after_row);
-    placed[k] = {p[frame] + R[frame] * capsule.p_LA, p[frame] + R[frame] * capsule.p_LB,
-                 capsule.radius_m, capsule.link >= 0};
+    const OnRow& capsule = capsules_[k];
+    const robot::RowPlace& place = at(capsule.row);
+    placed[k] = {place.p_WK + place.R_WK * capsule.p_KA, place.p_WK + place.R_WK * capsule.p_KB,
+                 capsule.radius_m, capsule.row >= 0};
   }
 }
 

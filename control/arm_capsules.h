@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <vector>
 
 #include "sidestep/control/joint_vector.h"
 #include "sidestep/core/pose.h"
@@ -31,9 +32,15 @@ class ArmCapsules {
   void Place(const JointVector& q, All& placed) const noexcept;
 
  private:
+  struct OnRow {
+    int row;                     // of the kinematics; -1: the base
+    Eigen::Vector3d p_KA, p_KB;  // in its frame
+    double radius_m;
+  };
+
   int num_joints_, size_;
-  std::array<robot::DhRow, kMaxJoints> dh_;
-  std::array<robot::CollisionCapsule, kMax> capsules_;
+  std::vector<robot::KinematicRow> rows_;
+  std::array<OnRow, kMax> capsules_;
   Eigen::Matrix3d R_WB_;
   Eigen::Vector3d p_WB_;
 };

@@ -3,52 +3,40 @@
 #include <Eigen/Core>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "sidestep/core/pose.h"
+#include "sidestep/robot/joint.h"
+#include "sidestep/robot/kinematics.h"
 
 namespace sidestep::robot {
 
-/// Limits of one joint (rad, rad/s, rad/s^2, rad/s^3, N m, N m/s). Infinite where robot.yaml gives
-/// none.
-struct JointLimits {
-  double q_min = 0, q_max = 0;
-  double v_max = 0;
-  double a_max = 0;
-  double jerk_max = 0;
-  double torque_max = 0;
-  double torque_rate_max = 0;
-};
-
-/// One row of a classic (distal) Denavit-Hartenberg table: A_i = Rz(q_i + theta) Tz(d) Tx(a)
-/// Rx(alpha).
-struct DhRow {
-  double a_m = 0, alpha_rad = 0, d_m = 0, theta_rad = 0;
-};
-
-/// A collision sphere, fixed in the frame after DH row `link` (0-based).
+/// A collision sphere, fixed in the frame of the link that joint `link` carries, or in the base
+/// frame B for link -1.
 struct CollisionSphere {
   int link = 0;
   Eigen::Vector3d p_LS = Eigen::Vector3d::Zero();  ///< [m]
   double radius_m = 0;
 };
 
-/// A capsule that covers a part of the arm, fixed in the frame after DH row `link`, or in the base
-/// frame B for link -1: the segment from A to B, grown by the radius.
+/// A capsule that covers a part of the arm, fixed in the frame of a link as a sphere is: the
+/// segment from A to B, grown by the radius.
 struct CollisionCapsule {
   int link = 0;
   Eigen::Vector3d p_LA = Eigen::Vector3d::Zero(), p_LB = Eigen::Vector3d::Zero();  ///< [m]
   double radius_m = 0;
 };
 
-/// What the tool, the frame after the last row, must not exceed; infinite where nothing is known.
+/// What the tool frame must not exceed; infinite where nothing is known.
 struct ToolLimits {
   double a_max = std::numeric_limits<double>::infinity();     ///< [m/s^2] the robot's own limit
   double a_reflex = std::numeric_limits<double>::infinity();  ///< above it a reflex was reported
 };
 
-/// Two links (0-based DH rows, first < second) that could touch each other.
+/// Two links, by the joints that carry them (-1: the base; first < second), that could touch each
+/// other.
 struct LinkPair {
   int first = 0, second = 0;
 };
@@ -59,9 +47,10 @@ struct SphereCenters {
   Eigen::MatrixXd Jq;     ///< 3S x n, d p_WS / d q; empty unless asked for
 };
 
-/// A serial arm as data: joints, limits, collision spheres, named configurations. Immutable; safe
-/// from many threads. Frames: W the world, B the base (X_WB is fixed), L_i the frame after DH row
-/// i.
+/// A robot as data: a tree of joints that begins at its base, their limits, collision spheres,
+/// named configurations. Immutable; safe from many threads. Frames: W the world, B the base (X_WB
+/// is fixed), L_i the link that joint i carries. A configuration q holds one number of each joint
+/// that moves by itself, in the order of the joints: rad, or m of one that slides.
 class RobotModel {
  public:
   /// Reads `<models_dir>/<name>/robot.yaml` (its keys: docs/robots.md).
@@ -73,22 +62,31 @@ class RobotModel {
   /// The robots there are: the folders of `models_dir` that hold a robot.yaml, sorted.
   static std::vector<std::string> ListNames(const std::string& models_dir);
 
-  /// What ComputeSphereCenters has room for; longer arms are refused.
+  /// Numbers of a configuration; more are refused.
   static constexpr int kMaxJoints = 16;
+  /// Joints that move, with those that mimic others; more are refused.
+  static constexpr int kMaxRows = 32;
   /// More are refused.
   static constexpr std::size_t kMaxCapsules = 32;
 
   const std::string& name() const { return name_; }
   const std::string& file() const { return file_; }  ///< where it was read
   /// The line there of what only other modules can judge, by its path (`joints[2].dh`,
-  /// `joints[2].limits.q_min_rad`, `mount.links`, ...); 1 for any other.
+  /// `joints[2].limits.q_min`, `mount.links`, ...); 1 for any other.
   int LineOf(const std::string& key) const;
   const Pose& X_WB() const { return X_WB_; }
+  /// How many numbers a configuration has.
   int num_joints() const { return static_cast<int>(limits_.size()); }
   int num_spheres() const { return static_cast<int>(spheres_.size()); }
+  /// Of each number of a configuration: the joint's name, its number among joints(), its limits.
   const std::vector<std::string>& joint_names() const { return joint_names_; }
-  const std::vector<DhRow>& dh() const { return dh_; }
+  const std::vector<int>& moving_joints() const { return moving_joints_; }
   const std::vector<JointLimits>& limits() const { return limits_; }
+
+  /// The whole tree, fixed joints and those that mimic others with it, parents before children.
+  const std::vector<Joint>& joints() const { return joints_; }
+  const std::string& base() const { return base_; }  ///< the base link's name
+  const Kinematics& kinematics() const { return kinematics_; }
   const ToolLimits& tool_limits() const { return tool_limits_; }
   const std::vector<CollisionSphere>& spheres() const { return spheres_; }
   const Eigen::VectorXd& sphere_radii_m() const { return radii_m_; }  ///< shape S
@@ -111,27 +109,33 @@ class RobotModel {
   const Eigen::VectorXd& stiffness() const { return stiffness_; }
   const Eigen::VectorXd& damping() const { return damping_; }
 
-  /// X_WL of the frame after each DH row, for q of shape n.
+  /// X_WL of the link of each of joints(), for q of shape n.
   /// @throws std::invalid_argument for a q of the wrong shape.
   std::vector<Pose> ComputeLinkPoses(const Eigen::VectorXd& q) const;
+  /// Where the tool frame is: robot.yaml's `tool_frame`, or else the link of the last joint.
+  Pose ComputeToolPose(const Eigen::VectorXd& q) const;
 
-  /// Centres of all spheres and, if asked, their Jacobian: column j of sphere s is
-  /// z_j x (p_s - o_j) with the axis z_j and origin o_j of joint j, zero for joints beyond the
-  /// sphere's link. No allocation beyond the result.
+  /// Centres of all spheres and, if asked, their Jacobian: of a joint that turns, with the axis z
+  /// and a point o of it, z x (p_s - o), of one that slides z; zero for joints that do not carry
+  /// the sphere's link. No allocation beyond the result.
   /// @throws std::invalid_argument for a q of the wrong shape.
   SphereCenters ComputeSphereCenters(const Eigen::VectorXd& q, bool with_jacobian) const;
 
  private:
-  struct Chain;  // where every joint axis and link frame is for one q
-  Chain ComputeChain(const Eigen::VectorXd& q) const;
+  struct Places;  // where every joint axis and row frame is for one q
+  void ComputePlaces(const Eigen::VectorXd& q, Places& places) const;
+  Pose PoseOf(int link, const Places& places) const;
 
-  std::string name_, file_;
+  std::string name_, file_, base_;
   std::map<std::string, int> lines_;
   Pose X_WB_;
+  std::vector<Joint> joints_;
+  Kinematics kinematics_;
   std::vector<std::string> joint_names_;
-  std::vector<DhRow> dh_;
-  std::vector<double> cos_alpha_, sin_alpha_;  // of dh_: half of all trigonometry
+  std::vector<int> moving_joints_;
   std::vector<JointLimits> limits_;
+  int tool_link_ = -1;
+  std::optional<Pose> X_LTool_;  // where it is not the link's frame
   ToolLimits tool_limits_;
   std::vector<CollisionSphere> spheres_;
   std::vector<CollisionCapsule> capsules_;

@@ -9,6 +9,7 @@
 
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/random.h"
+#include "sidestep/robot/limit_keys.h"
 #include "sidestep/scenarios/yaml_text.h"
 #include "sidestep/sim/mjcf_lines.h"
 #include "sidestep/sim/mujoco_model.h"
@@ -61,10 +62,12 @@ class Comparison {
                    "'" + name + "' is no joint of " + mjcf_.path() + " (there: " + Joints() + ")");
       }
       joints_.push_back(joint);
-      if (model_.jnt_type[joint] != mjJNT_HINGE) {
-        FailInMjcf(
-            "joint", name,
-            "is " + KindOf(model_.jnt_type[joint]) + ", must be a hinge: " + InYaml(i) + " turns");
+      const bool slides = JointOf(i).kind == robot::JointKind::kPrismatic;
+      if (model_.jnt_type[joint] != (slides ? mjJNT_SLIDE : mjJNT_HINGE)) {
+        FailInMjcf("joint", name,
+                   "is " + KindOf(model_.jnt_type[joint]) + ", must be " +
+                       (slides ? "a slide: " + InYaml(i) + " slides"
+                               : "a hinge: " + InYaml(i) + " turns"));
       }
       if (i > 0 && joints_[static_cast<std::size_t>(i) - 1] > joint) {
         FailInYaml(KeyOf(i) + ".name", "'" + name + "' comes before '" +
@@ -139,46 +142,36 @@ class Comparison {
     }
   }
 
-  // Each row by itself, seen from the frame before it: so a wrong row is told, and none after it.
+  // Each joint by itself, seen from its parent's frame: so one that is wrong is told, and none
+  // after it.
   void CheckKinematics() const {
-    const int n = robot_.num_joints();
-    std::vector<int> sites;
-    for (int i = 0; i < n; ++i) {
-      const std::string name = "dh" + std::to_string(i + 1);
-      sites.push_back(mj_name2id(&model_, mjOBJ_SITE, name.c_str()));
-      if (sites.back() >= 0) continue;
-      const std::string& joint = robot_.joint_names()[static_cast<std::size_t>(i)];
-      throw InputError(mjcf_.path(), mjcf_.Find("joint", "name", joint), "site '" + name + "'",
-                       "is missing: it marks the frame after " + KeyOf(i) + ".dh of " +
-                           InYaml(i, ".dh") + ", beyond joint '" + joint + "'");
-    }
+    const std::vector<robot::Joint>& joints = robot_.joints();
+    std::vector<Frame> frames;
+    for (std::size_t i = 0; i < joints.size(); ++i) frames.push_back(FindFrame(i));
     const MujocoDataPtr data = MakeMujocoData(model_);
-    std::vector<Difference> worst(static_cast<std::size_t>(n));
+    std::vector<Difference> worst(joints.size());
     RandomStream random(1, "robot agreement");
     for (int k = 0; k < kNumConfigurations; ++k) {
       const Eigen::VectorXd q = DrawConfiguration(random);
-      for (int i = 0; i < n; ++i) {
+      for (int i = 0; i < robot_.num_joints(); ++i) {
         const int joint = joints_[static_cast<std::size_t>(i)];
         data->qpos[model_.jnt_qposadr[joint]] = q(i);
       }
       mj_kinematics(&model_, data.get());
       const std::vector<Pose> X_WL = robot_.ComputeLinkPoses(q);
-      Pose X_WA = robot_.X_WB(), X_WA_mjcf = BaseIn(*data);
-      for (int i = 0; i < n; ++i) {
-        const auto row = static_cast<std::size_t>(i);
-        const Pose X_WS = SitePose(*data, sites[row]);
-        // Turned with the joint: there the row's own frame stands at (a, 0, d) whatever q is.
-        const Eigen::Quaterniond turn(
-            Eigen::AngleAxisd(q(i) + robot_.dh()[row].theta_rad, Eigen::Vector3d::UnitZ()));
-        const Pose X_RA = Pose(turn, Eigen::Vector3d::Zero()).Inverse();
-        const Difference difference(X_RA * X_WA.Inverse() * X_WL[row],
-                                    X_RA * X_WA_mjcf.Inverse() * X_WS);
-        if (difference.size() > worst[row].size()) worst[row] = difference;
-        X_WA = X_WL[row];
-        X_WA_mjcf = X_WS;
+      const Pose X_WB_mjcf = BaseIn(*data);
+      for (std::size_t i = 0; i < joints.size(); ++i) {
+        const int parent = joints[i].parent;
+        const Pose X_WP = parent < 0 ? robot_.X_WB() : X_WL[static_cast<std::size_t>(parent)];
+        const Pose X_WP_mjcf =
+            parent < 0 ? X_WB_mjcf : PoseOf(*data, frames[static_cast<std::size_t>(parent)]);
+        const Pose X_TP = UnturnedBy(joints[i], q) * X_WP.Inverse();
+        const Pose X_TP_mjcf = UnturnedBy(joints[i], q) * X_WP_mjcf.Inverse();
+        const Difference difference(X_TP * X_WL[i], X_TP_mjcf * PoseOf(*data, frames[i]));
+        if (difference.size() > worst[i].size()) worst[i] = difference;
       }
     }
-    for (int i = 0; i < n; ++i) CheckRow(i, worst[static_cast<std::size_t>(i)]);
+    for (std::size_t i = 0; i < joints.size(); ++i) CheckFrame(i, frames[i], worst[i]);
   }
 
  private:
@@ -196,27 +189,71 @@ class Comparison {
     double apart_m = 0, turned_rad = 0;
   };
 
-  void CheckRow(int i, const Difference& difference) const {
+  // What stands in the MJCF where the link of a joint is: its body, or a site.
+  struct Frame {
+    bool is_site = false;
+    int id = -1;
+    std::string name;
+  };
+
+  // Of a row of a table the site `dh<number>`, for bodies stand elsewhere; of any other joint what
+  // has its link's name.
+  Frame FindFrame(std::size_t i) const {
+    const robot::Joint& joint = robot_.joints()[i];
+    if (!joint.dh) {
+      const int body = mj_name2id(&model_, mjOBJ_BODY, joint.link.c_str());
+      if (body >= 0) return {false, body, joint.link};
+      const int site = mj_name2id(&model_, mjOBJ_SITE, joint.link.c_str());
+      if (site >= 0) return {true, site, joint.link};
+      FailInYaml(KeyOfJoint(i) + (robot_.LineOf(KeyOfJoint(i) + ".link") > 1 ? ".link" : ".name"),
+                 "'" + joint.link + "' is no body and no site of " + mjcf_.path());
+    }
+    std::size_t number = 0;
+    for (std::size_t k = 0; k <= i; ++k) number += robot_.joints()[k].dh.has_value();
+    const std::string name = "dh" + std::to_string(number);
+    const int site = mj_name2id(&model_, mjOBJ_SITE, name.c_str());
+    if (site >= 0) return {true, site, name};
+    throw InputError(mjcf_.path(), mjcf_.Find("joint", "name", joint.name), "site '" + name + "'",
+                     "is missing: it marks the frame after " + KeyOfJoint(i) + ".dh of " +
+                         InYamlOf(i, ".dh") + ", beyond joint '" + joint.name + "'");
+  }
+
+  // Takes the turn of a joint out: seen so, the frame after a row of a table stands at (a, 0, d)
+  // whatever q is, and a link that turns is not turned.
+  static Pose UnturnedBy(const robot::Joint& joint, const Eigen::VectorXd& q) {
+    if (joint.kind != robot::JointKind::kRevolute) return Pose();
+    const double angle = joint.multiplier * q(joint.coordinate) + joint.offset;
+    if (joint.dh) {
+      const Eigen::AngleAxisd turn(angle + joint.dh->theta_rad, Eigen::Vector3d::UnitZ());
+      return Pose(Eigen::Quaterniond(turn), Eigen::Vector3d::Zero()).Inverse();
+    }
+    return Pose();
+  }
+
+  void CheckFrame(std::size_t i, const Frame& frame, const Difference& difference) const {
     if (difference.size() <= kRounding) return;
-    const std::string site = "dh" + std::to_string(i + 1);
-    FailInYaml(KeyOf(i) + ".dh",
+    const bool is_row = robot_.joints()[i].dh.has_value();
+    const std::string what = (frame.is_site ? "the site '" : "the body '") + frame.name + "'";
+    FailInYaml(KeyOfJoint(i) + (is_row ? ".dh" : ".origin"),
                "puts its frame at " + scenarios::List(difference.p_yaml.unaryExpr(&Rounded)) +
-                   ", the site '" + site + "' of " + At("site", site) + " is at " +
-                   scenarios::List(difference.p_mjcf.unaryExpr(&Rounded)) + ": " +
+                   ", " + what + " of " + At(frame.is_site ? "site" : "body", frame.name) +
+                   " is at " + scenarios::List(difference.p_mjcf.unaryExpr(&Rounded)) + ": " +
                    Millimetres(difference.apart_m) + " mm and " +
                    scenarios::Number(Rounded(difference.turned_rad)) +
-                   " rad apart (seen from the frame before, turned with the " + "joint)");
+                   " rad apart (seen from the " +
+                   (is_row ? "frame before, turned with the joint)" : "parent link)"));
   }
 
   void CheckRange(int i, int joint) const {
     const robot::JointLimits& limits = robot_.limits()[static_cast<std::size_t>(i)];
     const bool limited = model_.jnt_limited[joint] != 0;
-    CheckLimit(i, "q_min_rad", limits.q_min, limited ? model_.jnt_range[2 * joint] : -kInfinity,
+    const robot::LimitKeys keys = robot::LimitKeysOf(JointOf(i).kind);
+    CheckLimit(i, keys.q_min, limits.q_min, limited ? model_.jnt_range[2 * joint] : -kInfinity,
                "joint", "range");
-    CheckLimit(i, "q_max_rad", limits.q_max, limited ? model_.jnt_range[2 * joint + 1] : kInfinity,
+    CheckLimit(i, keys.q_max, limits.q_max, limited ? model_.jnt_range[2 * joint + 1] : kInfinity,
                "joint", "range");
     if (!std::isfinite(limits.v_max)) {
-      FailInYaml(KeyOf(i) + ".limits.v_max_rad_s",
+      FailInYaml(KeyOf(i) + ".limits." + keys.v_max,
                  "is not given: nothing can be moved without a greatest speed");
     }
   }
@@ -259,7 +296,8 @@ class Comparison {
                  "must have the same limit both ways, has " + scenarios::Number(least) + " and " +
                      scenarios::Number(most));
     }
-    CheckLimit(i, "torque_max_n_m", robot_.limits()[row].torque_max, most, "", attribute);
+    CheckLimit(i, robot::LimitKeysOf(JointOf(i).kind).torque_max, robot_.limits()[row].torque_max,
+               most, "", attribute);
   }
 
   // One limit of joint i, which may be infinite on either side: there, nothing is written.
@@ -302,16 +340,30 @@ class Comparison {
                 Eigen::Map<const Eigen::Vector3d>(data.xpos + 3 * body));
   }
 
-  Pose SitePose(const mjData& data, int site) const {
+  Pose PoseOf(const mjData& data, const Frame& frame) const {
+    if (!frame.is_site) {
+      const mjtNum* const R = data.xquat + 4 * frame.id;
+      return Pose(Eigen::Quaterniond(R[0], R[1], R[2], R[3]),
+                  Eigen::Map<const Eigen::Vector3d>(data.xpos + 3 * frame.id));
+    }
     const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(data.site_xmat +
-                                                                           9 * site);
+                                                                           9 * frame.id);
     return Pose(Eigen::Quaterniond(Eigen::Matrix3d(R)),
-                Eigen::Map<const Eigen::Vector3d>(data.site_xpos + 3 * site));
+                Eigen::Map<const Eigen::Vector3d>(data.site_xpos + 3 * frame.id));
   }
 
-  static std::string KeyOf(int i) { return "joints[" + std::to_string(i) + "]"; }
+  // The joint that number i of a configuration moves.
+  const robot::Joint& JointOf(int i) const {
+    return robot_.joints()[static_cast<std::size_t>(MovingJoint(i))];
+  }
+  int MovingJoint(int i) const { return robot_.moving_joints()[static_cast<std::size_t>(i)]; }
+  std::string KeyOf(int i) const { return KeyOfJoint(static_cast<std::size_t>(MovingJoint(i))); }
   std::string InYaml(int i, const std::string& key = ".name") const {
-    return robot_.file() + ":" + std::to_string(robot_.LineOf(KeyOf(i) + key));
+    return InYamlOf(static_cast<std::size_t>(MovingJoint(i)), key);
+  }
+  static std::string KeyOfJoint(std::size_t i) { return "joints[" + std::to_string(i) + "]"; }
+  std::string InYamlOf(std::size_t i, const std::string& key) const {
+    return robot_.file() + ":" + std::to_string(robot_.LineOf(KeyOfJoint(i) + key));
   }
   std::string At(const std::string& tag, const std::string& name) const {
     return mjcf_.path() + ":" + std::to_string(mjcf_.Find(tag, "name", name));

@@ -1,7 +1,9 @@
 #include "sidestep/planner/objective/arm_group.h"
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
+#include <numeric>
+#include <set>
 #include <vector>
 
 #include "sidestep/planner/guarded_spheres.h"
@@ -13,66 +15,110 @@ namespace {
 using obstacle_kernels::Arm;
 using obstacle_kernels::kGroup;
 
-// The robot's spheres, link by link.
-std::vector<int> SpheresByLink(const robot::RobotModel& robot) {
+// The row in whose frame a sphere stands; -1: the base.
+int RowOf(const robot::RobotModel& robot, int sphere) {
+  const int link = robot.spheres()[static_cast<std::size_t>(sphere)].link;
+  return robot.kinematics().link(link).row;
+}
+
+// The robot's spheres, row by row.
+std::vector<int> SpheresByRow(const robot::RobotModel& robot) {
   std::vector<int> order(static_cast<std::size_t>(robot.num_spheres()));
-  for (std::size_t s = 0; s < order.size(); ++s) order[s] = static_cast<int>(s);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-    return robot.spheres()[static_cast<std::size_t>(a)].link <
-           robot.spheres()[static_cast<std::size_t>(b)].link;
-  });
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return RowOf(robot, a) < RowOf(robot, b); });
   return order;
+}
+
+// The coordinates of rows, ascending, none twice.
+std::vector<int> CoordinatesOf(const robot::RobotModel& robot, const std::vector<int>& rows) {
+  std::set<int> coordinates;
+  for (const int row : rows) {
+    coordinates.insert(robot.kinematics().rows()[static_cast<std::size_t>(row)].coordinate);
+  }
+  return {coordinates.begin(), coordinates.end()};
+}
+
+Arm::Movers MakeMovers(const robot::RobotModel& robot, const std::vector<int>& rows,
+                       const std::vector<int>& coordinates) {
+  Arm::Movers movers;
+  movers.coordinates = coordinates;
+  for (const int row : rows) {
+    const int coordinate = robot.kinematics().rows()[static_cast<std::size_t>(row)].coordinate;
+    const auto at = std::lower_bound(coordinates.begin(), coordinates.end(), coordinate);
+    movers.rows.push_back({row, static_cast<int>(at - coordinates.begin())});
+  }
+  return movers;
+}
+
+Arm::LinkHinge MakeLinkHinge(const robot::RobotModel& robot, const robot::LinkPair& links,
+                             const std::vector<int>& place) {
+  const auto movers_of = [&robot](int link) {
+    return robot.kinematics().movers(robot.kinematics().link(link).row);
+  };
+  const std::vector<int> first = movers_of(links.first), second = movers_of(links.second);
+  std::vector<int> of_first, of_second, of_both;  // rows ascend, as the base comes first
+  std::set_difference(first.begin(), first.end(), second.begin(), second.end(),
+                      std::back_inserter(of_first));
+  std::set_difference(second.begin(), second.end(), first.begin(), first.end(),
+                      std::back_inserter(of_second));
+  std::set_union(of_first.begin(), of_first.end(), of_second.begin(), of_second.end(),
+                 std::back_inserter(of_both));
+  const std::vector<int> coordinates = CoordinatesOf(robot, of_both);
+
+  Arm::LinkHinge hinge{
+      MakeMovers(robot, of_first, coordinates), MakeMovers(robot, of_second, coordinates), {}};
+  for (int a = 0; a < robot.num_spheres(); ++a) {
+    for (int b = 0; b < robot.num_spheres(); ++b) {
+      const robot::CollisionSphere& one = robot.spheres()[static_cast<std::size_t>(a)];
+      const robot::CollisionSphere& other = robot.spheres()[static_cast<std::size_t>(b)];
+      if (one.link != links.first || other.link != links.second) continue;
+      hinge.pairs.push_back({place[static_cast<std::size_t>(a)], place[static_cast<std::size_t>(b)],
+                             one.radius_m, other.radius_m});
+    }
+  }
+  return hinge;
 }
 
 Arm MakeArm(const robot::RobotModel& robot, double epsilon_m, double sigma,
             std::optional<double> self_epsilon_m) {
+  const robot::Kinematics& kinematics = robot.kinematics();
   Arm arm;
   arm.num_joints = robot.num_joints();
   const Eigen::Matrix3d R_WB = robot.X_WB().rotation().toRotationMatrix();
   Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(arm.R_WB.data()) = R_WB;
   Eigen::Map<Eigen::Vector3d>(arm.p_WB.data()) = robot.X_WB().translation();
 
-  const std::vector<int> by_link = SpheresByLink(robot);
-  std::vector<int> place(by_link.size());  // of the robot's sphere among the arm's
-  for (std::size_t s = 0; s < by_link.size(); ++s) {
-    const robot::CollisionSphere& sphere = robot.spheres()[static_cast<std::size_t>(by_link[s])];
-    place[static_cast<std::size_t>(by_link[s])] = static_cast<int>(s);
-    arm.spheres.push_back({{sphere.p_LS.x(), sphere.p_LS.y(), sphere.p_LS.z()}});
+  const std::vector<int> by_row = SpheresByRow(robot);
+  std::vector<int> place(by_row.size());  // of the robot's sphere among the arm's
+  for (std::size_t s = 0; s < by_row.size(); ++s) {
+    const robot::CollisionSphere& sphere = robot.spheres()[static_cast<std::size_t>(by_row[s])];
+    place[static_cast<std::size_t>(by_row[s])] = static_cast<int>(s);
+    const Eigen::Vector3d p_KS = kinematics.link(sphere.link).OnRow(sphere.p_LS);
+    arm.spheres.push_back({{p_KS.x(), p_KS.y(), p_KS.z()}});
   }
-  int end_sphere = 0;
-  for (int i = 0; i < arm.num_joints; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const robot::DhRow& row = robot.dh()[k];
-    while (end_sphere < robot.num_spheres() &&
-           robot.spheres()[static_cast<std::size_t>(by_link[static_cast<std::size_t>(end_sphere)])]
-                   .link == i) {
-      ++end_sphere;
-    }
-    arm.joints[k] = {row.theta_rad,           row.d_m,   row.a_m, std::cos(row.alpha_rad),
-                     std::sin(row.alpha_rad), end_sphere};
+  std::size_t end_sphere = 0;
+  const auto end_of = [&](int row) {
+    while (end_sphere < by_row.size() && RowOf(robot, by_row[end_sphere]) == row) ++end_sphere;
+    return static_cast<int>(end_sphere);
+  };
+  arm.end_base_sphere = end_of(-1);
+  arm.movers.emplace_back();
+  for (int i = 0; i < static_cast<int>(kinematics.rows().size()); ++i) {
+    arm.rows.push_back({kinematics.rows()[static_cast<std::size_t>(i)], end_of(i)});
+    const std::vector<int>& movers = kinematics.movers(i);
+    arm.movers.push_back(MakeMovers(robot, movers, CoordinatesOf(robot, movers)));
   }
   for (const int s : GuardedSpheres(robot)) {
     const robot::CollisionSphere& sphere = robot.spheres()[static_cast<std::size_t>(s)];
-    arm.hinges.push_back({place[static_cast<std::size_t>(s)], sphere.link, sphere.radius_m,
+    arm.hinges.push_back({place[static_cast<std::size_t>(s)], RowOf(robot, s) + 1, sphere.radius_m,
                           epsilon_m + sphere.radius_m});
   }
   arm.inverse_sigma = 1 / sigma;
   if (!self_epsilon_m) return arm;
   arm.self_epsilon_m = *self_epsilon_m;
   for (const robot::LinkPair& links : robot.self_collision()) {
-    Arm::LinkHinge& hinge = arm.link_hinges.emplace_back();
-    hinge.first = links.first;
-    hinge.second = links.second;
-    for (int a = 0; a < robot.num_spheres(); ++a) {
-      for (int b = 0; b < robot.num_spheres(); ++b) {
-        const robot::CollisionSphere& first = robot.spheres()[static_cast<std::size_t>(a)];
-        const robot::CollisionSphere& second = robot.spheres()[static_cast<std::size_t>(b)];
-        if (first.link != links.first || second.link != links.second) continue;
-        hinge.pairs.push_back({place[static_cast<std::size_t>(a)],
-                               place[static_cast<std::size_t>(b)], first.radius_m,
-                               second.radius_m});
-      }
-    }
+    arm.link_hinges.push_back(MakeLinkHinge(robot, links, place));
   }
   return arm;
 }
@@ -84,7 +130,7 @@ ArmGroup::ArmGroup(const robot::RobotModel& robot, double epsilon_m, double sigm
     : arm_(MakeArm(robot, epsilon_m, sigma, self_epsilon_m)) {
   const auto n = static_cast<std::size_t>(arm_.num_joints);
   q_8_.assign(kGroup * n, 0.0);
-  axes_8_.assign(kGroup * n * obstacle_kernels::kNumbersPerAxis, 0.0);
+  axes_8_.assign(kGroup * arm_.rows.size() * obstacle_kernels::kNumbersPerAxis, 0.0);
   centers_8_.assign(kGroup * 3 * arm_.spheres.size(), 0.0);
   samples_8_.assign(kGroup * 4 * arm_.hinges.size(), 0.0);
 }

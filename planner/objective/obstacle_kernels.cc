@@ -101,38 +101,92 @@ void SinCos(V x, V& sin, V& cos) {
   cos = hn::IfThenElse(half_turn(hn::Add(turns, hn::Set(d, 1.0))), hn::Neg(cos_part), cos_part);
 }
 
+struct Frame {
+  Vector x, y, z, p;
+};
+
+Vector OfFrame(const Frame& frame, double x, double y, double z) {
+  return Plus(Plus(Times(frame.x, Constant(x)), Times(frame.y, Constant(y))),
+              Times(frame.z, Constant(z)));
+}
+
+// The frame of a row's joint from that of its parent.
+void Move(const robot::KinematicRow& row, Frame& frame) {
+  const auto& R = row.R_PA;
+  const auto& p = row.p_PA;
+  frame.p = Plus(frame.p, OfFrame(frame, p(0), p(1), p(2)));
+  const Vector x = OfFrame(frame, R(0, 0), R(1, 0), R(2, 0));
+  const Vector y = OfFrame(frame, R(0, 1), R(1, 1), R(2, 1));
+  frame.z = OfFrame(frame, R(0, 2), R(1, 2), R(2, 2));
+  frame.x = x;
+  frame.y = y;
+}
+
+// Stores what the coordinate of a row does to its frame.
+void StoreAxis(const robot::KinematicRow& row, const Frame& frame, double* axis_8) {
+  const V factor = Constant(row.multiplier);
+  if (row.slides) {
+    const V zero = hn::Zero(D());
+    Store3({zero, zero, zero}, axis_8);
+    Store3(Times(frame.z, hn::Neg(factor)), axis_8 + 3 * kGroup);
+    return;
+  }
+  Store3(Times(frame.z, factor), axis_8);
+  Store3(Times(Cross(frame.z, frame.p), factor), axis_8 + 3 * kGroup);
+}
+
+// The frame K of a row from that of its joint.
+void Advance(const robot::KinematicRow& row, V q, Frame& frame) {
+  const V position = hn::Add(hn::Mul(q, Constant(row.multiplier)), Constant(row.offset));
+  V theta = Constant(row.theta_rad), distance = Constant(row.d_m);
+  if (row.slides) {
+    distance = hn::Add(position, distance);
+  } else {
+    theta = hn::Add(position, theta);
+  }
+  V s, c;
+  SinCos(theta, s, c);
+  const Vector x = Plus(Times(frame.x, c), Times(frame.y, s));
+  const Vector y = Minus(Times(frame.y, c), Times(frame.x, s));
+  frame.p = Plus(frame.p, Plus(Times(frame.z, distance), Times(x, Constant(row.a_m))));
+  const V ca = Constant(row.cos_alpha), sa = Constant(row.sin_alpha);
+  frame.x = x;
+  frame.y = Plus(Times(y, ca), Times(frame.z, sa));
+  frame.z = Minus(Times(frame.z, ca), Times(y, sa));
+}
+
 // RobotModel::ComputeSphereCenters, for the lanes that begin at `lane`.
 void CentersOfLanes(const Arm& arm, std::size_t lane, const double* q_8, double* axes_8,
                     double* centers_8) {
   const D d;
   const auto& R = arm.R_WB;
-  Vector x = {Constant(R[0]), Constant(R[3]), Constant(R[6])};
-  Vector y = {Constant(R[1]), Constant(R[4]), Constant(R[7])};
-  Vector z = {Constant(R[2]), Constant(R[5]), Constant(R[8])};
-  Vector p = {Constant(arm.p_WB[0]), Constant(arm.p_WB[1]), Constant(arm.p_WB[2])};
+  const Frame base = {{Constant(R[0]), Constant(R[3]), Constant(R[6])},
+                      {Constant(R[1]), Constant(R[4]), Constant(R[7])},
+                      {Constant(R[2]), Constant(R[5]), Constant(R[8])},
+                      {Constant(arm.p_WB[0]), Constant(arm.p_WB[1]), Constant(arm.p_WB[2])}};
   int sphere = 0;
-  for (int i = 0; i < arm.num_joints; ++i) {
-    const Arm::Joint& joint = arm.joints[static_cast<std::size_t>(i)];
-    double* const axis = axes_8 + kNumbersPerAxis * kGroup * static_cast<std::size_t>(i) + lane;
-    Store3(z, axis);
-    Store3(Cross(z, p), axis + 3 * kGroup);
-    V s, c;
-    SinCos(hn::Add(hn::Load(d, q_8 + kGroup * static_cast<std::size_t>(i) + lane),
-                   Constant(joint.theta_rad)),
-           s, c);
-    const Vector x_turned = Plus(Times(x, c), Times(y, s));
-    const Vector y_turned = Minus(Times(y, c), Times(x, s));
-    p = Plus(p, Plus(Times(z, Constant(joint.d_m)), Times(x_turned, Constant(joint.a_m))));
-    const V ca = Constant(joint.cos_alpha), sa = Constant(joint.sin_alpha);
-    x = x_turned;
-    y = Plus(Times(y_turned, ca), Times(z, sa));
-    z = Minus(Times(z, ca), Times(y_turned, sa));
-    for (; sphere < joint.end_sphere; ++sphere) {
-      const auto& at = arm.spheres[static_cast<std::size_t>(sphere)].p_LS;
-      const Vector offset = Plus(Plus(Times(x, Constant(at[0])), Times(y, Constant(at[1]))),
-                                 Times(z, Constant(at[2])));
-      Store3(Plus(p, offset), centers_8 + 3 * kGroup * static_cast<std::size_t>(sphere) + lane);
+  const auto place_spheres = [&](const Frame& frame, int end) {
+    for (; sphere < end; ++sphere) {
+      const auto& at = arm.spheres[static_cast<std::size_t>(sphere)].p_KS;
+      Store3(Plus(frame.p, OfFrame(frame, at[0], at[1], at[2])),
+             centers_8 + 3 * kGroup * static_cast<std::size_t>(sphere) + lane);
     }
+  };
+  place_spheres(base, arm.end_base_sphere);
+
+  Frame frames[robot::RobotModel::kMaxRows];
+  Frame frame = base;
+  const int num_rows = static_cast<int>(arm.rows.size());
+  for (int i = 0; i < num_rows; ++i) {
+    const Arm::Row& row = arm.rows[static_cast<std::size_t>(i)];
+    const robot::KinematicRow& joint = row.joint;
+    if (joint.parent != i - 1) frame = joint.parent < 0 ? base : frames[joint.parent];
+    if (joint.is_moved) Move(joint, frame);
+    StoreAxis(joint, frame, axes_8 + kNumbersPerAxis * kGroup * static_cast<std::size_t>(i) + lane);
+    const auto coordinate = static_cast<std::size_t>(joint.coordinate);
+    Advance(joint, hn::Load(d, q_8 + kGroup * coordinate + lane), frame);
+    frames[i] = frame;
+    place_spheres(frame, row.end_sphere);
   }
 }
 
@@ -151,21 +205,22 @@ class Sums {
     for (int h = 0; h < n_ * (n_ + 1) / 2; ++h) hessian_[h] = hn::Zero(D());
   }
 
-  // A hinge whose slope in the position of its point `p` is `slope`, where joints `begin` to
-  // end - 1 move that point.
-  void Add(V hinge, const Vector& p, const Vector& slope, int begin, int end) {
-    cost_ = hn::Add(cost_, hn::Mul(hinge, hinge));
-    const Vector torque = Cross(p, slope);
+  // A hinge whose slope in the position of its point `p` is `slope`.
+  void Add(V hinge, const Vector& p, const Vector& slope, const Arm::Movers& movers) {
     V J[kMaxJoints];
-    for (int j = begin; j < end; ++j) {
-      const double* const axis = axes_8_ + kNumbersPerAxis * kGroup * static_cast<std::size_t>(j);
-      J[j] = hn::Sub(Dot(Load3(axis), torque), Dot(Load3(axis + 3 * kGroup), slope));
-      gradient_[j] = hn::Add(gradient_[j], hn::Mul(J[j], hinge));
-    }
-    for (int a = begin; a < end; ++a) {
-      V* const row = hessian_ + a * (a + 1) / 2;
-      for (int b = begin; b <= a; ++b) row[b] = hn::Add(row[b], hn::Mul(J[a], J[b]));
-    }
+    Begin(movers, J);
+    AddSlope(p, slope, movers, J);
+    AddHinge(hinge, movers.coordinates, J);
+  }
+
+  // A hinge of the gap between two points, whose slope in the position of the second is `slope`.
+  void AddGap(V hinge, const Vector& first, const Vector& second, const Vector& slope,
+              const Arm::LinkHinge& links) {
+    V J[kMaxJoints];
+    Begin(links.of_second, J);
+    AddSlope(second, slope, links.of_second, J);
+    AddSlope(first, Times(slope, Constant(-1)), links.of_first, J);
+    AddHinge(hinge, links.of_second.coordinates, J);
   }
 
   void Store(double* terms_8) const {
@@ -179,6 +234,36 @@ class Sums {
   }
 
  private:
+  // J has an entry for each coordinate of the movers.
+  static void Begin(const Arm::Movers& movers, V* J) {
+    for (std::size_t k = 0; k < movers.coordinates.size(); ++k) J[k] = hn::Zero(D());
+  }
+
+  void AddSlope(const Vector& p, const Vector& slope, const Arm::Movers& movers, V* J) const {
+    const Vector torque = Cross(p, slope);
+    for (const Arm::Mover& mover : movers.rows) {
+      const double* const axis =
+          axes_8_ + kNumbersPerAxis * kGroup * static_cast<std::size_t>(mover.row);
+      J[mover.index] = hn::Add(
+          J[mover.index], hn::Sub(Dot(Load3(axis), torque), Dot(Load3(axis + 3 * kGroup), slope)));
+    }
+  }
+
+  void AddHinge(V hinge, const std::vector<int>& coordinates, const V* J) {
+    cost_ = hn::Add(cost_, hn::Mul(hinge, hinge));
+    const std::size_t count = coordinates.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      V& gradient = gradient_[coordinates[k]];
+      gradient = hn::Add(gradient, hn::Mul(J[k], hinge));
+    }
+    for (std::size_t a = 0; a < count; ++a) {
+      V* const row = hessian_ + coordinates[a] * (coordinates[a] + 1) / 2;
+      for (std::size_t b = 0; b <= a; ++b) {
+        row[coordinates[b]] = hn::Add(row[coordinates[b]], hn::Mul(J[a], J[b]));
+      }
+    }
+  }
+
   int n_;
   const double* axes_8_;
   V cost_;
@@ -191,15 +276,16 @@ void AddLinkHinge(const Arm& arm, const Arm::LinkHinge& links, const double* cen
   const D d;
   const V margin = Constant(arm.self_epsilon_m);
   V least = margin;
-  Vector apart = {hn::Zero(d), hn::Zero(d), hn::Zero(d)}, p = apart;
+  Vector apart = {hn::Zero(d), hn::Zero(d), hn::Zero(d)}, nearest_first = apart,
+         nearest_second = apart;
   V inverse = hn::Zero(d);
   bool any = false;
   for (const Arm::SpherePair& pair : links.pairs) {
     const auto center = [&](int sphere) {
       return Load3(centers_8 + 3 * kGroup * static_cast<std::size_t>(sphere));
     };
-    const Vector second = center(pair.second);
-    const Vector between = Minus(second, center(pair.first));
+    const Vector first = center(pair.first), second = center(pair.second);
+    const Vector between = Minus(second, first);
     const V square = Dot(between, between);
     // A little more than the hinge's reach: the root decides.
     const double reach_m =
@@ -211,7 +297,8 @@ void AddLinkHinge(const Arm& arm, const Arm::LinkHinge& links, const double* cen
     const M nearer = hn::Lt(gap, least);
     least = hn::IfThenElse(nearer, gap, least);
     apart = Choose(nearer, between, apart);
-    p = Choose(nearer, second, p);
+    nearest_first = Choose(nearer, first, nearest_first);
+    nearest_second = Choose(nearer, second, nearest_second);
     const M distinct = hn::Gt(norm, hn::Zero(d));
     const V one_over = hn::Div(Constant(1), hn::IfThenElse(distinct, norm, Constant(1)));
     inverse = hn::IfThenElse(nearer, one_over, inverse);
@@ -220,8 +307,7 @@ void AddLinkHinge(const Arm& arm, const Arm::LinkHinge& links, const double* cen
   if (!any) return;
   const V hinge = hn::Mul(hn::Sub(margin, least), Constant(arm.inverse_sigma));
   const Vector slope = Times(apart, hn::Mul(inverse, Constant(-arm.inverse_sigma)));
-  // What moves both links does not change the gap.
-  sums.Add(hinge, p, slope, links.first + 1, links.second + 1);
+  sums.AddGap(hinge, nearest_first, nearest_second, slope, links);
 }
 
 void TermsOfGroup(const Arm& arm, const double* axes_8, const double* centers_8,
@@ -240,7 +326,7 @@ void TermsOfGroup(const Arm& arm, const double* axes_8, const double* centers_8,
       const V value = hn::IfThenElseZero(active, hn::Mul(missing, inverse_sigma));
       const V slope = hn::IfThenElseZero(active, hn::Neg(inverse_sigma));
       sums.Add(value, Load3(centers_8 + 3 * kGroup * static_cast<std::size_t>(hinge.sphere) + lane),
-               Times(gradient, slope), 0, hinge.link + 1);
+               Times(gradient, slope), arm.movers[static_cast<std::size_t>(hinge.movers)]);
     }
     for (const Arm::LinkHinge& links : arm.link_hinges) {
       AddLinkHinge(arm, links, centers_8 + lane, sums);

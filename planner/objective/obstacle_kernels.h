@@ -17,17 +17,29 @@ namespace sidestep::planner::obstacle_kernels {
 inline constexpr std::size_t kGroup = 8;
 inline constexpr int kMaxJoints = robot::RobotModel::kMaxJoints;
 
-/// A serial arm and what is asked of it, ready for the kernels.
+/// An arm and what is asked of it, ready for the kernels.
 struct Arm {
-  struct Joint {
-    double theta_rad = 0, d_m = 0, a_m = 0, cos_alpha = 1, sin_alpha = 0;
-    int end_sphere = 0;  ///< spheres of this link end here; they begin where those before it end
+  /// A robot::KinematicRow, and the spheres that stand in its frame: they end at `end_sphere` and
+  /// begin where those before end; those of the base are the first.
+  struct Row {
+    robot::KinematicRow joint;
+    int end_sphere = 0;
   };
   struct Sphere {
-    std::array<double, 3> p_LS{};
+    std::array<double, 3> p_KS{};
+  };
+  /// A row that moves a sphere, and which of the coordinates that do so it follows.
+  struct Mover {
+    int row = 0, index = 0;
+  };
+  /// What moves the spheres of a row, or those of one row against those of another.
+  struct Movers {
+    std::vector<Mover> rows;
+    std::vector<int> coordinates;  ///< ascending
   };
   struct Hinge {
-    int sphere = 0, link = 0;
+    int sphere = 0;
+    int movers = 0;  ///< in `movers`
     double radius_m = 0;
     double reach_m = 0;  ///< active where the field is nearer than this
   };
@@ -35,16 +47,20 @@ struct Arm {
     int first = 0, second = 0;  // spheres
     double first_radius_m = 0, second_radius_m = 0;
   };
+  /// What moves both links does not change their gap, and is in neither list; both lists have the
+  /// same coordinates.
   struct LinkHinge {
-    int first = 0, second = 0;  // links
+    Movers of_first, of_second;
     std::vector<SpherePair> pairs;
   };
 
   int num_joints = 0;
   std::array<double, 9> R_WB{};  ///< row by row
   std::array<double, 3> p_WB{};
-  std::array<Joint, kMaxJoints> joints;
-  std::vector<Sphere> spheres;  ///< link by link
+  int end_base_sphere = 0;
+  std::vector<Row> rows;
+  std::vector<Movers> movers;   ///< of the base, then of each row
+  std::vector<Sphere> spheres;  ///< row by row
   std::vector<Hinge> hinges;
   std::vector<LinkHinge> link_hinges;
   double self_epsilon_m = 0;
@@ -55,10 +71,12 @@ struct Arm {
   int num_terms() const { return 1 + num_joints + num_joints * (num_joints + 1) / 2; }
 };
 
-/// Of each joint its axis z (3), and z x o with o a point of the axis (3).
+/// Of each row how fast its frame turns, w (3), and less the velocity of the point of it at W's
+/// origin, -v (3), as its coordinate grows: z and z x o of a hinge about z through o, 0 and -z of a
+/// slide.
 inline constexpr std::size_t kNumbersPerAxis = 6;
 
-/// @param q_8 n; @param axes_8 n x 6 and @param centers_8 S x 3 [m], in W, receive the answer.
+/// @param q_8 n; @param axes_8 rows x 6 and @param centers_8 S x 3 [m], in W, receive the answer.
 void ComputeCenters(const Arm& arm, const double* q_8, double* axes_8, double* centers_8);
 
 /// @param samples_8 of each hinge what the field says of its sphere: distance, gradient.

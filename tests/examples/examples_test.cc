@@ -31,9 +31,9 @@ Finished Sidestep(std::vector<std::string> arguments) {
 
 class Examples : public ::testing::Test {
  protected:
-  // Runs the example's scenario with one setting changed.
-  nlohmann::json Run(const std::string& setting) {
-    std::vector<std::string> arguments = {"run", "pointer_and_ball", "--out", folder_.string()};
+  // Runs an example's scenario with one setting changed.
+  nlohmann::json Run(const std::string& setting, const std::string& scenario = "pointer_and_ball") {
+    std::vector<std::string> arguments = {"run", scenario, "--out", folder_.string()};
     if (!setting.empty()) arguments.insert(arguments.end(), {"--set", setting});
     const Finished finished = Sidestep(arguments);
     EXPECT_EQ(finished.exit_code, 0) << finished.err;
@@ -60,7 +60,9 @@ TEST_F(Examples, AreOneFileAndOneLineEach) {
     const auto files = fs::directory_iterator(kExamples / kind);
     EXPECT_EQ(std::distance(files, fs::directory_iterator()), 2) << kind;
   }
-  EXPECT_EQ(std::distance(fs::directory_iterator(kExamples / "scenario"), {}), 1);
+  for (const auto& entry : fs::directory_iterator(kExamples / "scenario")) {
+    EXPECT_TRUE(entry.is_regular_file()) << entry.path();
+  }
 }
 
 TEST_F(Examples, AreEachShownInTheDocumentation) {
@@ -75,9 +77,9 @@ TEST_F(Examples, AreEachShownInTheDocumentation) {
 
 TEST_F(Examples, AreListedByTheirNames) {
   const std::pair<const char*, const char*> names[] = {
-      {"planners", "hold_still"}, {"predictors", "half_speed"},
-      {"sensors", "blinking"},    {"metrics", "longest_blindness_s"},
-      {"robots", "pointer"},      {"scenarios", "pointer_and_ball"}};
+      {"planners", "hold_still"},         {"predictors", "half_speed"}, {"sensors", "blinking"},
+      {"metrics", "longest_blindness_s"}, {"robots", "pointer"},        {"robots", "panda_rail"},
+      {"scenarios", "pointer_and_ball"}};
   for (const auto& [kind, name] : names) {
     EXPECT_THAT(Sidestep({"list", kind, "--names"}).out, HasSubstr(std::string(name) + "\n"));
   }
@@ -88,6 +90,14 @@ TEST_F(Examples, RobotScenarioAndMetricRunAsTheyAre) {
   EXPECT_EQ(result["robot"], "pointer");
   EXPECT_EQ(result["outcome"], "goal");
   EXPECT_NEAR(result["longest_blindness_s"].get<double>(), 1.0 / 30, 0.002);
+}
+
+TEST_F(Examples, ARobotOnARailIsPlannedForAndRun) {
+  const nlohmann::json result = Run("", "panda_on_a_rail");
+  EXPECT_EQ(result["robot"], "panda_rail");
+  EXPECT_EQ(result["outcome"], "goal");
+  const nlohmann::json unseen = Run("knowledge=static", "panda_on_a_rail");
+  EXPECT_EQ(unseen["outcome"], "collision");
 }
 
 TEST_F(Examples, ThePlannerHoldsStill) {

@@ -59,13 +59,20 @@ class ObstacleObjectiveOf : public ::testing::TestWithParam<Case> {
     return ObstacleObjective(robot, GetParam().epsilon_m, kSigma, GetParam().self_epsilon_m);
   }
 
-  // All over the joints' range, and three turns beyond.
+  // All over the joints' range, and three turns beyond; of slides within their range.
   static Eigen::MatrixXd Configurations(const robot::RobotModel& robot, int count) {
     RandomStream random(3, "configurations");
     Eigen::MatrixXd q(robot.num_joints(), count);
     for (int c = 0; c < count; ++c) {
       for (int j = 0; j < q.rows(); ++j) {
-        q(j, c) = random.Uniform(-3, 3) + (c % 7 == 3 ? 6 * M_PI : 0);
+        const auto joint =
+            static_cast<std::size_t>(robot.moving_joints()[static_cast<std::size_t>(j)]);
+        if (robot.joints()[joint].kind == robot::JointKind::kPrismatic) {
+          const robot::JointLimits& limits = robot.limits()[static_cast<std::size_t>(j)];
+          q(j, c) = random.Uniform(limits.q_min, limits.q_max);
+        } else {
+          q(j, c) = random.Uniform(-3, 3) + (c % 7 == 3 ? 6 * M_PI : 0);
+        }
       }
     }
     return q;
@@ -171,6 +178,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"PandaThatKeepsItsLinksFarApart", "models/panda/robot.yaml", 0.05, 0.3},
                       Case{"PandaWithoutLinks", "models/panda/robot.yaml", 0.2, std::nullopt},
                       Case{"Wam", "models/wam/robot.yaml", 0.3, 0.05},
+                      Case{"JointTree", "tests/data/joint_tree/robot.yaml", 0.3, 0.4},
                       Case{"FoldingArm", "tests/support/folding_arm.yaml", 0.3, 0.2}),
     [](const auto& test) { return test.param.name; });
 

@@ -1,4 +1,5 @@
 // What every folder of models/ with a robot.yaml must keep: a new robot is tested by being there.
+// What is demanded follows from its robot.yaml.
 
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
@@ -26,7 +27,14 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMajorMatrixXd = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-const std::string kModels = SIDESTEP_SOURCE_DIR "/models";
+// The folders of all robots: those that are shipped and the example on a rail.
+std::vector<std::string> Folders() {
+  const std::string models = SIDESTEP_SOURCE_DIR "/models";
+  std::vector<std::string> folders = {SIDESTEP_SOURCE_DIR "/examples/robot/panda_rail"};
+  for (const std::string& name : RobotModel::ListNames(models))
+    folders.push_back(models + "/" + name);
+  return folders;
+}
 
 bool IsSolid(const mjModel& model, int geom) {
   return model.geom_contype[geom] != 0 || model.geom_conaffinity[geom] != 0;
@@ -34,8 +42,8 @@ bool IsSolid(const mjModel& model, int geom) {
 
 class EveryModel : public ::testing::TestWithParam<std::string> {
  protected:
-  EveryModel() : robot_(RobotModel::Load(kModels, GetParam(), Pose())) {
-    const std::string path = kModels + "/" + GetParam() + "/" + GetParam() + ".xml";
+  EveryModel() : robot_(RobotModel::FromFile(GetParam() + "/robot.yaml", Pose())) {
+    const std::string path = GetParam() + "/" + robot_.name() + ".xml";
     char error[1000] = "";
     model_.reset(mj_loadXML(path.c_str(), nullptr, error, sizeof error));
     if (model_ == nullptr) throw std::runtime_error(error);
@@ -66,9 +74,30 @@ class EveryModel : public ::testing::TestWithParam<std::string> {
     return all;
   }
 
-  int DhSite(int row) const {
-    const std::string name = "dh" + std::to_string(row + 1);
-    return mj_name2id(model_.get(), mjOBJ_SITE, name.c_str());
+  // What stands where the link of a joint is: its body, or after a row of a table a site.
+  struct Frame {
+    int body;
+    Eigen::Vector3d p;
+    Eigen::Matrix3d R;
+  };
+  using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  Frame FrameOf(int joint) const {
+    const std::vector<Joint>& joints = robot_.joints();
+    if (!joints[static_cast<std::size_t>(joint)].dh) {
+      const std::string& link = joints[static_cast<std::size_t>(joint)].link;
+      const int body = mj_name2id(model_.get(), mjOBJ_BODY, link.c_str());
+      if (body < 0) throw std::runtime_error("there is no body " + link);
+      return {body, Eigen::Map<const Eigen::Vector3d>(data_->xpos + 3 * body),
+              Eigen::Map<const RowMajor3>(data_->xmat + 9 * body)};
+    }
+    const auto number = std::count_if(joints.begin(), joints.begin() + joint + 1,
+                                      [](const Joint& one) { return one.dh.has_value(); });
+    const std::string name = "dh" + std::to_string(number);
+    const int site = mj_name2id(model_.get(), mjOBJ_SITE, name.c_str());
+    if (site < 0) throw std::runtime_error("there is no site " + name);
+    return {model_->site_bodyid[site],
+            Eigen::Map<const Eigen::Vector3d>(data_->site_xpos + 3 * site),
+            Eigen::Map<const RowMajor3>(data_->site_xmat + 9 * site)};
   }
 
   std::string BodyName(int geom) const {
@@ -105,15 +134,12 @@ TEST_P(EveryModel, HasTheKinematicsOfItsMjcf) {
   for (const VectorXd& q : Configurations(100)) {
     ASSERT_NO_FATAL_FAILURE(MoveTo(q));
     const std::vector<Pose> X_WL = robot_.ComputeLinkPoses(q);
-    for (int i = 0; i < robot_.num_joints(); ++i) {
-      const int site = DhSite(i);
-      ASSERT_GE(site, 0) << "there is no site dh" << i + 1;
-      const Pose& pose = X_WL[static_cast<std::size_t>(i)];
-      const Eigen::Map<const Eigen::Vector3d> p(data_->site_xpos + 3 * site);
-      const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(data_->site_xmat +
-                                                                             9 * site);
-      EXPECT_LE((pose.translation() - p).norm(), 1e-12) << "row " << i << " at " << q.transpose();
-      EXPECT_LE((pose.rotation().toRotationMatrix() - R).norm(), 1e-12) << "row " << i;
+    for (std::size_t i = 0; i < robot_.joints().size(); ++i) {
+      const Frame frame = FrameOf(static_cast<int>(i));
+      EXPECT_LE((X_WL[i].translation() - frame.p).norm(), 1e-12)
+          << robot_.joints()[i].link << " at " << q.transpose();
+      EXPECT_LE((X_WL[i].rotation().toRotationMatrix() - frame.R).norm(), 1e-12)
+          << robot_.joints()[i].link;
     }
   }
 }
@@ -124,8 +150,8 @@ TEST_P(EveryModel, HasSphereJacobiansEqualToMujocosAndToDifferences) {
     ASSERT_NO_FATAL_FAILURE(MoveTo(q));
     const SphereCenters spheres = robot_.ComputeSphereCenters(q, /*with_jacobian=*/true);
     for (int s = 0; s < robot_.num_spheres(); ++s) {
-      const int body =
-          model_->site_bodyid[DhSite(robot_.spheres()[static_cast<std::size_t>(s)].link)];
+      const int link = robot_.spheres()[static_cast<std::size_t>(s)].link;
+      const int body = link < 0 ? 0 : FrameOf(link).body;
       RowMajorMatrixXd J(3, n);
       mj_jac(model_.get(), data_.get(), J.data(), nullptr, spheres.p_WS.col(s).data(), body);
       EXPECT_LE((spheres.Jq.middleRows(3 * s, 3) - J).cwiseAbs().maxCoeff(), 1e-12) << s;
@@ -149,7 +175,10 @@ TEST_P(EveryModel, HasTheJointsLimitsAndMotorsOfItsMjcf) {
     EXPECT_LT(limits.q_min, limits.q_max);
     EXPECT_EQ(mj_id2name(model_.get(), mjOBJ_JOINT, j),
               robot_.joint_names()[static_cast<std::size_t>(j)]);
-    EXPECT_EQ(model_->jnt_type[j], mjJNT_HINGE);
+    const auto joint =
+        static_cast<std::size_t>(robot_.moving_joints()[static_cast<std::size_t>(j)]);
+    const bool slides = robot_.joints()[joint].kind == JointKind::kPrismatic;
+    EXPECT_EQ(model_->jnt_type[j], slides ? mjJNT_SLIDE : mjJNT_HINGE);
     ASSERT_EQ(model_->jnt_limited[j] != 0, std::isfinite(limits.q_min));
     if (model_->jnt_limited[j]) {
       EXPECT_EQ(model_->jnt_range[2 * j], limits.q_min);
@@ -245,9 +274,9 @@ TEST_P(EveryModel, SticksOutOfItsSpheresByNoMoreThanIsDocumented) {
       }
     }
   }
-  const auto listed = kSticksOut_mm.find(GetParam());
+  const auto listed = kSticksOut_mm.find(robot_.name());
   for (const auto& [body, furthest] : furthest_mm) {
-    std::cout << GetParam() << ": " << body << " sticks out by " << furthest << " mm\n";
+    std::cout << robot_.name() << ": " << body << " sticks out by " << furthest << " mm\n";
     EXPECT_LE(furthest, listed == kSticksOut_mm.end() ? kUnlisted_mm : listed->second.at(body))
         << body;
   }
@@ -309,8 +338,9 @@ TEST_P(EveryModel, IsHeldStablyAndWellDampedByItsGains) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, EveryModel, ::testing::ValuesIn(RobotModel::ListNames(kModels)),
-                         [](const auto& test) { return test.param; });
+INSTANTIATE_TEST_SUITE_P(Models, EveryModel, ::testing::ValuesIn(Folders()), [](const auto& test) {
+  return test.param.substr(test.param.rfind('/') + 1);
+});
 
 }  // namespace
 }  // namespace sidestep::robot

@@ -23,6 +23,8 @@ TEST(RobotPage, TellsEveryKeyAsTheReaderHasIt) {
              << one.jerk_max << " " << one.torque_max << "\n";
     }
     limits << robot.tool_limits().a_max << " " << robot.tool_limits().a_reflex << "\n";
+    const Eigen::VectorXd q = Eigen::VectorXd::Constant(robot.num_joints(), 0.3);
+    limits << robot.ComputeSphereCenters(q, false).p_WS << robot.ComputeToolPose(q).translation();
     return limits.str();
   };
   for (const std::string& difference :
