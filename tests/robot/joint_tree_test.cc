@@ -116,7 +116,8 @@ TEST(DhRows, AreJointsAboutZAndWhatIsFixedToThem) {
   const std::string rest =
       "configurations: {}\nmount: {spheres: [], links: []}\n"
       "control: {stiffness_n_m_rad: [1, 1], damping_n_m_s_rad: [1, 1]}\n";
-  const std::string by_rows = folder.path() + "/rows.yaml", by_axes = folder.path() + "/axes.yaml";
+  const std::string by_rows = (folder.path() / "rows.yaml").string();
+  const std::string by_axes = (folder.path() / "axes.yaml").string();
   std::ofstream(by_rows)
       << "name: rows\njoints:\n"
          "  - {name: a, dh: {d_m: 0.3, a_m: 0.2, theta_rad: 0.4, alpha_rad: -1.1}"
