@@ -35,6 +35,7 @@ constexpr double kAfterGoal = 0.5;     // s of episode after the goal is reached
 constexpr double kTimeEpsilon = 1e-9;  // s; far below a physics step, far above rounding
 constexpr double kPoll_s = 2e-3;       // on a wall clock, how long nobody looks up
 constexpr double kLongestStop_s = 3;   // an arm that is told to hold rests by then
+constexpr double kUsualStop_s = 0.25;  // under the profile lab
 constexpr double kStill_rad_s = 0.01;
 constexpr double kTick_s = 1.5e-3;      // a robot has looked at what it was told by then
 constexpr double kPlanningShare = 0.9;  // of a cycle in real time; judging the plan is the rest
@@ -438,7 +439,7 @@ void CheckFieldSizes(const scenarios::Scenario& scenario, const sdf::WorldModelO
   const bool by_tags =
       options.knowledge == sdf::Knowledge::kPrediction && scenario.sensor.tags.has_value();
   if (!by_truth && !by_tags) return;
-  const double growth_m = by_tags && options.growth_sigmas > 0 ? options.growth_limit_m : 0;
+  const double growth_m = by_tags ? sdf::LargestGrowth(options) : 0;
   for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
     const double cells = sdf::ShapeFieldCells(
         scenario.moving_obstacles[i].shape, options.grid.cell_m, options.max_distance_m + growth_m);
@@ -462,6 +463,11 @@ sdf::WorldModelOptions MakeWorldModelOptions(const scenarios::Scenario& scenario
   options.predictor = scenario.predictor;
   options.growth_sigmas = scenario.growth_sigmas;
   options.growth_limit_m = scenario.growth_limit_m;
+  if (scenario.safety.profile == scenarios::SafetyProfile::kLab) {
+    // Plans that the supervisor lets through: its stops keep clear of where things can stray.
+    options.stray_m_s2 = scenario.safety.obstacle_acceleration_m_s2;
+    options.stray_s = kUsualStop_s;
+  }
   options.grid = scenario.grid;
   if (scenario.sensor.camera) {
     options.unseen = sdf::UnseenSpaceFromString(scenario.sensor.camera->unseen);
