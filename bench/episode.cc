@@ -17,6 +17,7 @@
 #include "sidestep/bench/metrics/registry.h"
 #include "sidestep/bench/planning_worker.h"
 #include "sidestep/bench/safety_watch.h"
+#include "sidestep/bench/scan_order.h"
 #include "sidestep/bench/scenario_planner.h"
 #include "sidestep/bench/sensor_watch.h"
 #include "sidestep/bench/true_world.h"
@@ -66,6 +67,12 @@ std::string WhyNoPlan(const record::Recording& recording) {
          (last.reason.empty() ? "" : ", " + last.reason);
 }
 
+std::vector<std::string> NamesOf(const std::vector<robot::NamedSensor>& sensors) {
+  std::vector<std::string> names;
+  for (const robot::NamedSensor& sensor : sensors) names.push_back(sensor.name);
+  return names;
+}
+
 // Whatever happens, a robot is not left moving.
 class HoldAtTheEnd {
  public:
@@ -97,6 +104,7 @@ class Loop {
         is_real_time_(options.clock != EpisodeClock::kVirtual),
         worker_(is_real_time_ ? MakeThreadWorker() : MakeInlineWorker()),
         recorder_(scenario, robot, world),
+        scans_(NamesOf(world.sensors)),
         end_s_(options.horizons * horizon_s_) {
     if (scenario.safety.profile != scenarios::SafetyProfile::kOff) {
       safety_.emplace(scenario, world);
@@ -213,7 +221,8 @@ class Loop {
   double NextCycle() const { return worker_->is_busy() ? end_s_ + 1 : next_cycle_s_; }
   double NextScan() {
     const SensorWatch* const next = NextSensor();
-    return next == nullptr ? end_s_ + 1 : next->NextDue().seconds();
+    const double read_s = next == nullptr ? end_s_ + 1 : next->NextDue().seconds();
+    return std::min(read_s, scans_.NextDue().seconds());
   }
   // The one that is due first.
   SensorWatch* NextSensor() {
@@ -275,23 +284,29 @@ class Loop {
   }
 
   void Sense() {
-    const double begin = ThreadCpuSeconds();
     SensorWatch* const sensor = NextSensor();
-    const std::optional<Scan> scan = sensor->Read(EpisodeTime(now_s_));
+    if (sensor != nullptr && sensor->NextDue().seconds() <= now_s_) Read(*sensor);
+    while (const std::optional<Scan> scan = scans_.Take(EpisodeTime(now_s_))) Learn(*scan);
+  }
+
+  void Read(SensorWatch& sensor) {
+    const double begin = ThreadCpuSeconds();
+    std::optional<Scan> scan = sensor.Read(EpisodeTime(now_s_));
     sense_s_ += ThreadCpuSeconds() - begin;
-    if (const auto jump_s = sensor->TakeClockJump()) {
+    if (const auto jump_s = sensor.TakeClockJump()) {
       // Without its scans, what is seen gets stale.
       Note(control::SafetyCheck::kClockJump, control::Reaction::kNone, *jump_s,
            ClockWatch::kJump_s);
     }
-    if (!scan) return;
-    // The world model takes scans of all sensors in the order of capture.
-    if (newest_scan_ && scan->t <= *newest_scan_) return sensor->LeaveOut();
-    newest_scan_ = scan->t;
-    model_->Observe(*scan);
+    if (scan && !scans_.Put(*std::move(scan), EpisodeTime(now_s_))) sensor.LeaveOut();
+  }
+
+  void Learn(const Scan& scan) {
+    has_scan_ = true;
+    model_->Observe(scan);
     for (TrackEvent& event : model_->TakeEvents()) recorder_.Keep(std::move(event));
-    recorder_.Keep(*scan, EpisodeTime(now_s_), model_->Occupancy());
-    if (safety_) world_.robot->Watch(safety_->Observe(*scan));
+    recorder_.Keep(scan, EpisodeTime(now_s_), model_->Occupancy());
+    if (safety_) world_.robot->Watch(safety_->Observe(scan));
   }
 
   // The first multiple of the period that is past `t_s`, or as good as there, and not used yet.
@@ -306,7 +321,7 @@ class Loop {
     next_cycle_s_ = ++cycle_index_ / scenario_.replan_rate_hz;
     // In real time a cycle that is done early need not wait for its moment.
     if (!is_real_time_) ScheduleCycle(now_s_ + expected.seconds());
-    if (!newest_scan_) return;  // nothing is known yet
+    if (!has_scan_) return;  // nothing is known yet
     const robot::RobotStatus status = world_.robot->Status();
     // What it follows is behind its time as far as it has slowed down.
     replanner_.Delay(HorizonOffset(status.lag.seconds() - lag_.seconds()));
@@ -412,6 +427,7 @@ class Loop {
   const bool is_real_time_;
   std::unique_ptr<PlanningWorker> worker_;
   EpisodeRecorder recorder_;
+  ScanOrder scans_;
   std::optional<SafetyWatch> safety_;
 
   std::deque<Pending> pending_;
@@ -422,9 +438,9 @@ class Loop {
   double next_cycle_s_ = 0;
   double end_s_;
   double sense_s_ = 0;
-  bool begins_anew_ = true;                 // the next plan: it goes on with no other
-  double begun_anew_s_ = -1;                // when the latest of such was to begin
-  std::optional<EpisodeTime> newest_scan_;  // capture
+  bool begins_anew_ = true;   // the next plan: it goes on with no other
+  double begun_anew_s_ = -1;  // when the latest of such was to begin
+  bool has_scan_ = false;
   bool is_aborted_ = false;
   EpisodeResult result_;
 };
