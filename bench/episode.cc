@@ -17,6 +17,7 @@
 #include "sidestep/bench/metrics/registry.h"
 #include "sidestep/bench/planning_worker.h"
 #include "sidestep/bench/safety_watch.h"
+#include "sidestep/bench/scan_order.h"
 #include "sidestep/bench/scenario_planner.h"
 #include "sidestep/bench/sensor_watch.h"
 #include "sidestep/bench/true_world.h"
@@ -35,6 +36,7 @@ constexpr double kAfterGoal = 0.5;     // s of episode after the goal is reached
 constexpr double kTimeEpsilon = 1e-9;  // s; far below a physics step, far above rounding
 constexpr double kPoll_s = 2e-3;       // on a wall clock, how long nobody looks up
 constexpr double kLongestStop_s = 3;   // an arm that is told to hold rests by then
+constexpr double kUsualStop_s = 0.25;  // under the profile lab
 constexpr double kStill_rad_s = 0.01;
 constexpr double kTick_s = 1.5e-3;      // a robot has looked at what it was told by then
 constexpr double kPlanningShare = 0.9;  // of a cycle in real time; judging the plan is the rest
@@ -63,6 +65,12 @@ std::string WhyNoPlan(const record::Recording& recording) {
   return "none of " + std::to_string(recording.cycles.size()) +
          " plans was accepted; the last one: " + last.status +
          (last.reason.empty() ? "" : ", " + last.reason);
+}
+
+std::vector<std::string> NamesOf(const std::vector<robot::NamedSensor>& sensors) {
+  std::vector<std::string> names;
+  for (const robot::NamedSensor& sensor : sensors) names.push_back(sensor.name);
+  return names;
 }
 
 // Whatever happens, a robot is not left moving.
@@ -96,6 +104,7 @@ class Loop {
         is_real_time_(options.clock != EpisodeClock::kVirtual),
         worker_(is_real_time_ ? MakeThreadWorker() : MakeInlineWorker()),
         recorder_(scenario, robot, world),
+        scans_(NamesOf(world.sensors)),
         end_s_(options.horizons * horizon_s_) {
     if (scenario.safety.profile != scenarios::SafetyProfile::kOff) {
       safety_.emplace(scenario, world);
@@ -212,7 +221,8 @@ class Loop {
   double NextCycle() const { return worker_->is_busy() ? end_s_ + 1 : next_cycle_s_; }
   double NextScan() {
     const SensorWatch* const next = NextSensor();
-    return next == nullptr ? end_s_ + 1 : next->NextDue().seconds();
+    const double read_s = next == nullptr ? end_s_ + 1 : next->NextDue().seconds();
+    return std::min(read_s, scans_.NextDue().seconds());
   }
   // The one that is due first.
   SensorWatch* NextSensor() {
@@ -274,23 +284,29 @@ class Loop {
   }
 
   void Sense() {
-    const double begin = ThreadCpuSeconds();
     SensorWatch* const sensor = NextSensor();
-    const std::optional<Scan> scan = sensor->Read(EpisodeTime(now_s_));
+    if (sensor != nullptr && sensor->NextDue().seconds() <= now_s_) Read(*sensor);
+    while (const std::optional<Scan> scan = scans_.Take(EpisodeTime(now_s_))) Learn(*scan);
+  }
+
+  void Read(SensorWatch& sensor) {
+    const double begin = ThreadCpuSeconds();
+    std::optional<Scan> scan = sensor.Read(EpisodeTime(now_s_));
     sense_s_ += ThreadCpuSeconds() - begin;
-    if (const auto jump_s = sensor->TakeClockJump()) {
+    if (const auto jump_s = sensor.TakeClockJump()) {
       // Without its scans, what is seen gets stale.
       Note(control::SafetyCheck::kClockJump, control::Reaction::kNone, *jump_s,
            ClockWatch::kJump_s);
     }
-    if (!scan) return;
-    // The world model takes scans of all sensors in the order of capture.
-    if (newest_scan_ && scan->t <= *newest_scan_) return sensor->LeaveOut();
-    newest_scan_ = scan->t;
-    model_->Observe(*scan);
+    if (scan && !scans_.Put(*std::move(scan), EpisodeTime(now_s_))) sensor.LeaveOut();
+  }
+
+  void Learn(const Scan& scan) {
+    has_scan_ = true;
+    model_->Observe(scan);
     for (TrackEvent& event : model_->TakeEvents()) recorder_.Keep(std::move(event));
-    recorder_.Keep(*scan, EpisodeTime(now_s_), model_->Occupancy());
-    if (safety_) world_.robot->Watch(safety_->Observe(*scan));
+    recorder_.Keep(scan, EpisodeTime(now_s_), model_->Occupancy());
+    if (safety_) world_.robot->Watch(safety_->Observe(scan));
   }
 
   // The first multiple of the period that is past `t_s`, or as good as there, and not used yet.
@@ -305,7 +321,7 @@ class Loop {
     next_cycle_s_ = ++cycle_index_ / scenario_.replan_rate_hz;
     // In real time a cycle that is done early need not wait for its moment.
     if (!is_real_time_) ScheduleCycle(now_s_ + expected.seconds());
-    if (!newest_scan_) return;  // nothing is known yet
+    if (!has_scan_) return;  // nothing is known yet
     const robot::RobotStatus status = world_.robot->Status();
     // What it follows is behind its time as far as it has slowed down.
     replanner_.Delay(HorizonOffset(status.lag.seconds() - lag_.seconds()));
@@ -411,6 +427,7 @@ class Loop {
   const bool is_real_time_;
   std::unique_ptr<PlanningWorker> worker_;
   EpisodeRecorder recorder_;
+  ScanOrder scans_;
   std::optional<SafetyWatch> safety_;
 
   std::deque<Pending> pending_;
@@ -421,9 +438,9 @@ class Loop {
   double next_cycle_s_ = 0;
   double end_s_;
   double sense_s_ = 0;
-  bool begins_anew_ = true;                 // the next plan: it goes on with no other
-  double begun_anew_s_ = -1;                // when the latest of such was to begin
-  std::optional<EpisodeTime> newest_scan_;  // capture
+  bool begins_anew_ = true;   // the next plan: it goes on with no other
+  double begun_anew_s_ = -1;  // when the latest of such was to begin
+  bool has_scan_ = false;
   bool is_aborted_ = false;
   EpisodeResult result_;
 };
@@ -438,7 +455,7 @@ void CheckFieldSizes(const scenarios::Scenario& scenario, const sdf::WorldModelO
   const bool by_tags =
       options.knowledge == sdf::Knowledge::kPrediction && scenario.sensor.tags.has_value();
   if (!by_truth && !by_tags) return;
-  const double growth_m = by_tags && options.growth_sigmas > 0 ? options.growth_limit_m : 0;
+  const double growth_m = by_tags ? sdf::LargestGrowth(options) : 0;
   for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
     const double cells = sdf::ShapeFieldCells(
         scenario.moving_obstacles[i].shape, options.grid.cell_m, options.max_distance_m + growth_m);
@@ -462,6 +479,11 @@ sdf::WorldModelOptions MakeWorldModelOptions(const scenarios::Scenario& scenario
   options.predictor = scenario.predictor;
   options.growth_sigmas = scenario.growth_sigmas;
   options.growth_limit_m = scenario.growth_limit_m;
+  if (scenario.safety.profile == scenarios::SafetyProfile::kLab) {
+    // Plans that the supervisor lets through: its stops keep clear of where things can stray.
+    options.stray_m_s2 = scenario.safety.obstacle_acceleration_m_s2;
+    options.stray_s = kUsualStop_s;
+  }
   options.grid = scenario.grid;
   if (scenario.sensor.camera) {
     options.unseen = sdf::UnseenSpaceFromString(scenario.sensor.camera->unseen);

@@ -50,7 +50,8 @@ struct EpisodeResult {
   /// Cycles that needed more CPU time than they were charged: that took less than they take.
   int cycles_over_charge = 0;
   int late_plans = 0;  ///< that came after the moment they were made for, and were dropped
-  /// Scans by each sensor's name that were captured no later than the one before, and left out.
+  /// Scans by each sensor's name that were left out: captured no later than the one before, or come
+  /// too late to be told in the order of capture (bench/scan_order.h).
   std::map<std::string, int> scans_left_out;
   /// How long the robot was kept waiting for each command, in real time; empty in simulation.
   std::vector<double> answers_s;

@@ -9,7 +9,7 @@ sdf::WorldModelOptions OptionsFor(const scenarios::Scenario& scenario, const Epi
   // Its fields are not asked for: what is near them is of no interest.
   sdf::WorldModelOptions options = MakeWorldModelOptions(scenario, scenario.grid.cell_m, world);
   options.knowledge = sdf::Knowledge::kPrediction;
-  options.growth_sigmas = 0;
+  options.growth_sigmas = options.stray_s = 0;
   return options;
 }
 

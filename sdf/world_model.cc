@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -27,6 +28,9 @@ void Erase(const Shape& shape, const Pose& X_WO, CellRule rule, OccupancyGrid* g
   VisitFilledCells(grid->spec, shape, X_WO, rule, grid->spec.cell_m / 4,
                    [&](std::size_t cell) { grid->cells[cell] = 0; });
 }
+
+// How far a thing can be from where it would be by itself.
+double StrayAfter(double s, double a_m_s2) { return a_m_s2 * s * s / 2; }
 
 // What all kinds of knowledge share: the order of scans, the grid, the static map, the clock.
 class MappedWorld : public WorldModel {
@@ -141,9 +145,9 @@ class PredictedWorld final : public MappedWorld {
   explicit PredictedWorld(const WorldModelOptions& options)
       : MappedWorld(options),
         predictor_(MakePredictor(options.predictor)),
-        tracker_(options.grid, {.max_distance_m = options.max_distance_m + GrowthLimit(options),
+        tracker_(options.grid, {.max_distance_m = options.max_distance_m + LargestGrowth(options),
                                 .convention = options.convention}),
-        named_objects_(options.grid.cell_m, options.max_distance_m + GrowthLimit(options)) {}
+        named_objects_(options.grid.cell_m, options.max_distance_m + LargestGrowth(options)) {}
 
   std::vector<PredictedObject> DescribeObjects(
       const std::vector<EpisodeTime>& times) const override {
@@ -188,8 +192,20 @@ class PredictedWorld final : public MappedWorld {
     PredictedMotion motion;
   };
 
-  static double GrowthLimit(const WorldModelOptions& options) {
-    return options.growth_sigmas > 0 ? options.growth_limit_m : 0;
+  // How much thicker a thing is taken to be: for what is not known of it, and for what it may do.
+  std::function<double(EpisodeTime)> Growth(const Belief& belief) const {
+    const auto doubt_m = [sigmas = options_.growth_sigmas, limit_m = options_.growth_limit_m,
+                          covariance_m2 = belief.motion.covariance_m2](EpisodeTime t) {
+      if (sigmas == 0) return 0.0;
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance_m2(t),
+                                                                Eigen::EigenvaluesOnly);
+      return std::min(sigmas * std::sqrt(std::max(0.0, axes.eigenvalues()(2))), limit_m);
+    };
+    const auto stray_m = [a_m_s2 = options_.stray_m_s2, most_s = options_.stray_s,
+                          seen = belief.object->latest().t](EpisodeTime t) {
+      return StrayAfter(std::clamp((t - seen).seconds(), 0.0, most_s), a_m_s2);
+    };
+    return [=](EpisodeTime t) { return doubt_m(t) + stray_m(t); };
   }
 
   void LearnObjects(const Scan& scan) override { named_objects_.Update(scan.objects, scan.t); }
@@ -218,16 +234,9 @@ class PredictedWorld final : public MappedWorld {
     for (const Belief& belief : believed_) {
       MovingField& field =
           moving.emplace_back(MovingField{belief.object->field_O, belief.motion.X_WO});
-      if (options_.growth_sigmas > 0) {
-        field.max_growth_m = options_.growth_limit_m;
-        field.growth_m =
-            OncePerTime<double>([sigmas = options_.growth_sigmas,
-                                 covariance_m2 = belief.motion.covariance_m2](EpisodeTime t) {
-              const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance_m2(t),
-                                                                        Eigen::EigenvaluesOnly);
-              return sigmas * std::sqrt(std::max(0.0, axes.eigenvalues()(2)));
-            });
-      }
+      if (LargestGrowth(options_) == 0) continue;
+      field.max_growth_m = LargestGrowth(options_);
+      field.growth_m = OncePerTime<double>(Growth(belief));
     }
     return MakeComposite(std::move(static_W), std::move(moving));
   }
@@ -296,6 +305,11 @@ constexpr Word kWords[] = {{Knowledge::kStatic, "static"},
 
 }  // namespace
 
+double LargestGrowth(const WorldModelOptions& options) {
+  const double doubt_m = options.growth_sigmas > 0 ? options.growth_limit_m : 0;
+  return doubt_m + StrayAfter(options.stray_s, options.stray_m_s2);
+}
+
 std::string ToString(Knowledge knowledge) {
   for (const Word& entry : kWords) {
     if (entry.knowledge == knowledge) return entry.word;
@@ -317,7 +331,8 @@ std::unique_ptr<WorldModel> MakeWorldModel(const WorldModelOptions& options) {
   if (!(options.max_distance_m > 0)) {
     throw std::invalid_argument("WorldModel: max_distance_m must be > 0");
   }
-  if (!(options.growth_sigmas >= 0) || !(options.growth_limit_m >= 0)) {
+  if (!(options.growth_sigmas >= 0) || !(options.growth_limit_m >= 0) ||
+      !(options.stray_m_s2 >= 0) || !(options.stray_s >= 0)) {
     throw std::invalid_argument("WorldModel: growth must be >= 0");
   }
   MakePredictor(options.predictor);  // A wrong name is wrong even where it is not used.

@@ -40,6 +40,10 @@ struct WorldModelOptions {
   /// Under prediction, moving things are taken to be thicker by so many standard deviations of
   /// where they are predicted to be, in the worst direction, but by no more than the limit [m].
   double growth_sigmas = 0, growth_limit_m = 0.1;
+  /// And by as far as they can stray from there if their velocity changes by no more than this
+  /// [m/s^2], reckoned for at most so long [s]: by then one has looked again, or has stopped. What
+  /// is near already is not thought to be touched, but to be left.
+  double stray_m_s2 = 0, stray_s = 0;
   GridSpec grid;              ///< in W
   double max_distance_m = 0;  ///< fields are clamped here: safety margin + largest sphere
   /// Of fields made from cells; full_knowledge has the true shapes of what moves.
@@ -54,6 +58,9 @@ struct WorldModelOptions {
   /// Every moving obstacle with its true motion, as values; must be set for full_knowledge.
   std::optional<std::vector<MovingShape>> true_obstacles;
 };
+
+/// By how much moving things are taken to be thicker at most [m].
+double LargestGrowth(const WorldModelOptions& options);
 
 /// CPU seconds that the stages of one planning cycle took, for the report only.
 struct WorldModelTimes {

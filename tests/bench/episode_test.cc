@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -266,36 +268,79 @@ TEST_F(Episode, GoesOnWithWhatItKnowsWhenAnOverdueSensorHasNothingMoreToGive) {
   EXPECT_NEAR(world_.empty_reads, 1000 * silent_s, 5);
 }
 
-// Arrives half a frame after the first one's, and is older.
-class SlowSensor final : public robot::Sensor {
+// Two sensors that share what one sees: every other scan comes from the late one, so much later.
+class SharedSensor {
  public:
-  EpisodeTime NextDue() const override { return EpisodeTime((next_ + 0.5) / 30.0); }
-  std::optional<Scan> Read(EpisodeTime now) override {
-    if (now < NextDue()) return std::nullopt;
-    Scan scan;
-    scan.t = EpisodeTime((next_++ - 0.5) / 30.0);
-    return scan;
-  }
-  int num_read() const { return next_; }
+  static constexpr HorizonOffset kLate{0.05};
+  explicit SharedSensor(robot::Sensor& all) : prompt_(*this), late_(*this), all_(all) {}
+
+  robot::Sensor* prompt() { return &prompt_; }
+  robot::Sensor* late() { return &late_; }
 
  private:
-  int next_ = 0;
+  class Prompt final : public robot::Sensor {
+   public:
+    explicit Prompt(SharedSensor& shared) : shared_(shared) {}
+    EpisodeTime NextDue() const override { return shared_.all_.NextDue(); }
+    std::optional<Scan> Read(EpisodeTime now) override {
+      std::optional<Scan> scan = shared_.all_.Read(now);
+      if (!scan || shared_.num_read_++ % 2 == 0) return scan;
+      shared_.waiting_.push_back(*std::move(scan));
+      return std::nullopt;
+    }
+
+   private:
+    SharedSensor& shared_;
+  };
+
+  class Late final : public robot::Sensor {
+   public:
+    explicit Late(SharedSensor& shared) : shared_(shared) {}
+    EpisodeTime NextDue() const override {
+      return shared_.waiting_.empty() ? EpisodeTime(std::numeric_limits<double>::infinity())
+                                      : shared_.waiting_.front().t + kLate;
+    }
+    std::optional<Scan> Read(EpisodeTime now) override {
+      if (now < NextDue()) return std::nullopt;
+      Scan scan = std::move(shared_.waiting_.front());
+      shared_.waiting_.pop_front();
+      return scan;
+    }
+
+   private:
+    SharedSensor& shared_;
+  };
+
+  Prompt prompt_;
+  Late late_;
+  robot::Sensor& all_;
+  int num_read_ = 0;
+  std::deque<Scan> waiting_;  // on their way
 };
 
-TEST_F(Episode, LeavesOutAndCountsTheScansOfASlowerSensor) {
+TEST_F(Episode, TakesInTheScansOfALateSensorInTheOrderOfCapture) {
   const EpisodeResult alone = Run();
-  SlowSensor slow;
+  std::optional<SharedSensor> shared;
   const WorldFactory both = [&](const scenarios::Scenario& scenario,
                                 const robot::RobotModel& robot) {
     EpisodeWorld world = world_.Factory()(scenario, robot);
-    world.sensors.push_back({"slow", &slow});
+    shared.emplace(*world.sensors.front().sensor);
+    world.sensors = {{"prompt", shared->prompt()}, {"late", shared->late()}};
     return world;
   };
   const EpisodeResult result = RunEpisode(scenario_, arm_, both);
-  EXPECT_EQ(result.outcome, alone.outcome) << result.reason;
-  EXPECT_EQ(result.recording.observations.size(), alone.recording.observations.size());
-  EXPECT_GT(slow.num_read(), 10);
-  EXPECT_EQ(result.scans_left_out.at("slow"), slow.num_read());
+  EXPECT_EQ(result.outcome, Outcome::kGoal) << result.reason;
+  // How late it is, is learned by the first.
+  EXPECT_EQ(result.scans_left_out.at("late"), 1);
+  EXPECT_EQ(result.scans_left_out.at("prompt"), 0);
+  std::vector<record::ObservationRecord> expected = alone.recording.observations;
+  expected.erase(expected.begin() + 1);
+  const std::vector<record::ObservationRecord>& seen = result.recording.observations;
+  ASSERT_GT(seen.size(), 30u);
+  for (std::size_t i = 0; i < std::min(seen.size(), expected.size()); ++i) {
+    EXPECT_EQ(seen[i].t, expected[i].t) << i;
+    EXPECT_LE((seen[i].t_arrival - seen[i].t).seconds(), SharedSensor::kLate.seconds() + 1e-9) << i;
+  }
 }
 
 TEST_F(Episode, ThatIsStoppedFromOutsideBrakesAndKeepsWhatHappened) {

@@ -2,6 +2,7 @@
 // server: what it promises as a RobotInterface, and what it does when something goes wrong.
 #include "sidestep/hardware/panda_robot.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,8 +40,8 @@ std::unique_ptr<PandaRobot> Connect(const ServedPanda& served,
                                       served.robot(), options);
 }
 
-// A second of motion of the first and the fourth joint, well within the limits.
-Trajectory Nod(const Eigen::VectorXd& q) {
+// A motion of the first and the fourth joint; in a second, it is well within the limits.
+Trajectory Nod(const Eigen::VectorXd& q, double duration_s = 1) {
   Trajectory motion;
   constexpr int kStates = 11;
   motion.t_s = Eigen::VectorXd::LinSpaced(kStates, 0, 1);
@@ -50,9 +51,10 @@ Trajectory Nod(const Eigen::VectorXd& q) {
     const double s = motion.t_s(k);
     for (const int joint : {0, 3}) {
       motion.q(joint, k) += 0.2 * (s * s * s * (10 - 15 * s + 6 * s * s));
-      motion.v(joint, k) = 0.2 * 30 * s * s * (1 - s) * (1 - s);
+      motion.v(joint, k) = 0.2 * 30 * s * s * (1 - s) * (1 - s) / duration_s;
     }
   }
+  motion.t_s *= duration_s;
   return motion;
 }
 
@@ -168,6 +170,42 @@ INSTANTIATE_TEST_SUITE_P(
                 "cartesian_reflex"},
         Trouble{"ACutConnection", "faults: [{kind: cut_link, at_s: 0.5}]", "closed"}),
     [](const auto& test) { return std::string(test.param.name); });
+
+// The robot's estimate of the force at its hand, as the arm's own acceleration disturbs it: 20 N at
+// 1 m/s^2. No limit is broken, and nothing is touched.
+TEST(PandaRobot, SaysSoWhenItsHandAcceleratesMoreThanTheRobotBears) {
+  const char* const estimate = "force_estimate: {per_speed_n_s_m: 0, per_acceleration_kg: 20}";
+  const auto run = [&](double duration_s, std::vector<ControlSample>* ticks) -> std::string {
+    const ServedPanda served(estimate);
+    const auto panda = Connect(served);
+    panda->Submit(Nod(panda->Read().q, duration_s), EpisodeTime(0));
+    try {
+      panda->AdvanceTo(EpisodeTime(duration_s + 0.5));
+      return "";
+    } catch (const robot::RobotError& error) {
+      *ticks = error.last_ticks();
+      EXPECT_EQ(panda->Status().mode, robot::RobotMode::kFault);
+      return error.what();
+    }
+  };
+  std::vector<ControlSample> ticks;
+  EXPECT_EQ(run(2, &ticks), "");
+  EXPECT_THAT(run(0.4, &ticks), ::testing::HasSubstr("reflex: cartesian_reflex"));
+
+  // What it was told then.
+  const robot::RobotModel model =
+      robot::RobotModel::Load(SIDESTEP_SOURCE_DIR "/models", "panda", Pose());
+  const auto hand_m = [&](std::size_t i) -> Eigen::Vector3d {
+    return model.ComputeLinkPoses(ticks[i].q_command).back().translation();
+  };
+  double fastest_m_s2 = 0;
+  for (std::size_t i = 2; i < ticks.size(); ++i) {
+    const Eigen::Vector3d a_m_s2 = (hand_m(i) - 2 * hand_m(i - 1) + hand_m(i - 2)) / 1e-6;
+    fastest_m_s2 = std::max(fastest_m_s2, a_m_s2.norm());
+  }
+  EXPECT_GT(fastest_m_s2, 1);
+  EXPECT_LT(fastest_m_s2, model.tool_limits().a_max);
+}
 
 // Each of the robot's own reasons for a reflex, told by the wire.
 TEST(PandaRobot, TellsEachOfTheRobotsErrorsAndGoesOnOnlyAfterARecovery) {

@@ -362,9 +362,37 @@ TEST(GrownObjects, AreThickerByTheStandardDeviationsAskedForUpToTheLimit) {
   EXPECT_NEAR(distance_m(*plain, 1.5) - distance_m(*grown, 1.5), 0.07, 1e-9);
 }
 
+TEST(GrownObjects, AreThickerByAsFarAsTheyCanStrayBesides) {
+  const auto field_with = [](double sigmas, double stray_m_s2) {
+    WorldModelOptions options = Options(Knowledge::kPrediction);
+    options.growth_sigmas = sigmas;
+    options.growth_limit_m = 0.03;
+    options.stray_m_s2 = stray_m_s2;
+    options.stray_s = 0.2;
+    const auto world = MakeWorldModel(options);
+    for (int frame = 0; frame <= 15; ++frame) world->Observe(ScanAt(EpisodeTime(frame / 30.0)));
+    return world->MakeField();
+  };
+  const auto distance_m = [](const DistanceField& field, double after_s) {
+    const EpisodeTime t(0.5 + after_s);  // since it was seen last
+    return field.Sample(PassingBox().p_WO(t) + Eigen::Vector3d(0.2, 0, 0), t).distance_m;
+  };
+  const auto plain = field_with(0, 0), stray = field_with(0, 2), both = field_with(50, 2);
+  const struct {
+    double after_s, stray_m;
+  } cases[] = {{-0.1, 0}, {0, 0}, {0.1, 0.01}, {0.2, 0.04}, {1, 0.04}};
+  for (const auto& [after_s, stray_m] : cases) {
+    const double plain_m = distance_m(*plain, after_s);
+    EXPECT_NEAR(plain_m - distance_m(*stray, after_s), stray_m, 1e-9) << after_s;
+    EXPECT_NEAR(plain_m - distance_m(*both, after_s), stray_m + 0.03, 1e-9) << after_s;
+  }
+}
+
 TEST(GrownObjects, GoOnToTheClampWithoutAJump) {
   WorldModelOptions options = Options(Knowledge::kPrediction);
   options.growth_sigmas = 2;
+  options.stray_m_s2 = 2;
+  options.stray_s = 0.2;
   const auto world = MakeWorldModel(options);
   for (int frame = 0; frame <= 15; ++frame) world->Observe(ScanAt(EpisodeTime(frame / 30.0)));
   const auto field = world->MakeField();

@@ -97,7 +97,8 @@ double FastestSphere(const robot::RobotModel& robot, const ControlSample& tick) 
 scenarios::Scenario LoadBase(const std::string& source_dir) {
   return scenarios::LoadScenario(
       source_dir + "/scenarios/hardware_single_table.yaml",
-      {{"sensor",
+      {{"predictor", "kalman_turn"},
+       {"sensor",
         "{name: tags, rate_hz: 30, tags: {position_m: [2, 0, 2], across_noise: 0, "
         "along_noise_per_m: 0}}"}});
 }
