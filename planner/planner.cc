@@ -69,8 +69,10 @@ PlanResult Planner::Plan(const PlanRequest& request) const {
     return result;
   }
   result.iterations = answer.iterations;
+  result.spent = std::max(answer.spent, answer.iterations);
+  result.progress = std::move(answer.progress);
   if (!answer.trajectory) {
-    if (request.budget.IsSpent(answer.iterations)) result.status = PlanStatus::kTimedOut;
+    if (request.budget.IsSpent(result.spent)) result.status = PlanStatus::kTimedOut;
     result.reason = answer.why_none.empty() ? "found no plan" : std::move(answer.why_none);
     return result;
   }

@@ -36,6 +36,8 @@ struct PlanAnswer {
   std::optional<Trajectory> trajectory = {};  ///< on the request's grid; none if none was found
   bool converged = false;  ///< it stopped by itself, not at a cap or a spent budget
   int iterations = 0;      ///< of all solves together
+  int spent = 0;           ///< of the budget's iterations; at least as many
+  SearchProgress progress = {};
   /// Each part half the sum of squared residuals; what only fixed states decide is left out.
   PlanCost cost = {};
   std::string why_none = {};  ///< for a person, where there is no trajectory
@@ -46,6 +48,8 @@ struct PlanResult {
   std::optional<Trajectory> trajectory;  ///< finite, on the request's grid; none: see `reason`
   std::string reason;                    ///< why there is none
   int iterations = 0;
+  int spent = 0;            ///< of the budget's iterations
+  SearchProgress progress;  ///< for the next request
   PlanCost cost;
   Clearance clearance;  ///< of the free part, in the field; without a trajectory, none measured
   LimitUse limit_use;   ///< of the free part, of the robot's own limits

@@ -23,10 +23,12 @@ struct ReplannerOptions {
   int num_states() const;  ///< of a whole horizon
 };
 
-/// A plan, and when it begins: its state k is at start + t_s(k).
-struct TimedPlan {
-  Trajectory trajectory;
-  EpisodeTime start;
+/// What a cycle may search for, and where each search is to be taken up if the cycle before ran out
+/// of budget. Equal for all else.
+struct CycleSearches {
+  SearchProgress way_out;   ///< from the goal, once the robot has stayed there
+  SearchProgress going_on;  ///< from the plan that runs
+  SearchProgress anew;      ///< with a new horizon
 };
 
 /// All that one planning cycle starts from, as values: it may be worked on in another thread, or
@@ -40,6 +42,7 @@ struct CycleTask {
   std::optional<TimedPlan> running;  ///< what the robot follows
   bool is_braking = false;           ///< what it follows leads to no goal
   PlanBudget budget = {};            ///< of all plans of the cycle together
+  CycleSearches searches = {};       ///< as the cycle before left them
 };
 
 struct CycleResult {
@@ -51,6 +54,7 @@ struct CycleResult {
   /// the one found, or else the one kept, with that one's clearance from the moment of effect on.
   /// Its objects are left to whoever made the field.
   CycleRecord record;
+  CycleSearches searches;
   double optimise_s = 0;  ///< CPU seconds of this thread, for the report only
 };
 
@@ -75,6 +79,10 @@ struct CycleResult {
 /// new horizon to the goal, which may have more time and begins with another guess; and to brake
 /// (see braking.h) and wait. Then the safest is taken (see clearance.h), and none if going on with
 /// what runs is as safe. A robot that brakes or waits looks for new horizons alone.
+///
+/// All searches share the budget. Whether the robot may stay at its goal is not worth more than
+/// half of it; nor, where the cycle before came to a new horizon too late, is going on from what
+/// runs.
 CycleResult RunCycle(const Planner& planner, const ReplannerOptions& options,
                      const CycleTask& task);
 

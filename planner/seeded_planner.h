@@ -18,8 +18,11 @@ namespace sidestep::planner {
 /// solved with limits at once. A plan is judged by its clearance, not by its cost. If a cold one is
 /// not free within the limits, or a warm one not free, direct motions with other timings are tried
 /// as seeds until one is, and the best counts. Where all of them touch something, a cold start is
-/// followed by detours over random configurations, other ones for another time. Such seeds get few
-/// iterations, and no second stage if the first leaves them less safe than the best so far.
+/// followed by detours (planner/seeds.h). Such seeds get few iterations, and no second stage if the
+/// first leaves them less safe than the best so far.
+///
+/// A search that its budget cuts short goes on in the next request: it takes up the best plan so
+/// far, and then the guesses from where it stopped, in a ring.
 class SeededPlanner : public Planner {
  public:
   PlannerCapabilities capabilities() const override {

@@ -225,6 +225,59 @@ TEST(Replanner, SharesItsBudgetAmongThePlansOfACycle) {
   EXPECT_EQ(second.record.iterations, 40);
 }
 
+// Spends all it may and says that it had more to try.
+class InsatiablePlanner final : public Planner {
+ public:
+  InsatiablePlanner() : Planner(MakePlanarArm(), Loop::Settings()) {}
+  struct Asked {
+    int iterations;
+    bool is_warm;
+    int next_seed;
+  };
+  mutable std::vector<Asked> asked;
+
+ private:
+  PlanAnswer DoPlan(const PlanRequest& request, PlanJudge&) const override {
+    asked.push_back(
+        {request.budget.iterations, request.initial.has_value(), request.progress.next_seed});
+    PlanAnswer answer;
+    answer.trajectory = MakeDirectMotion(request, sidestep::planner::Timing::kWholeTime);
+    answer.iterations = request.budget.iterations;
+    answer.progress = {request.initial.has_value(), static_cast<int>(asked.size()), std::nullopt};
+    return answer;
+  }
+};
+
+TEST(Replanner, KeepsHalfOfTheNextBudgetForANewHorizonThatItCameTooLateFor) {
+  MovingBallWorld world = NothingThere();
+  const InsatiablePlanner planner;
+  Replanner replanner(planner, {.horizon_s = 3, .step_s = 0.1, .q_goal = kGoal});
+  const auto cycle = [&](double now_s) {
+    CycleTask task =
+        replanner.Prepare(EpisodeTime(now_s), {EpisodeTime(now_s), kStart, Eigen::Vector2d::Zero()},
+                          HorizonOffset(0.1), GoalWatch(kGoal, 0), world.MakeField());
+    task.budget.iterations = 41;
+    CycleResult result = replanner.Work(task);
+    if (now_s > 0) result.plan.reset();  // so that the next cycle is like this one
+    replanner.Accept(result);
+    return result.record;
+  };
+  cycle(0);
+  world.Replace({0.95, 0, 0}, {0, 0, 0}, 0.1);  // in the middle of its way
+  ASSERT_EQ(planner.asked.size(), 1u);
+  EXPECT_TRUE(cycle(0.1).cut_short);
+  ASSERT_EQ(planner.asked.size(), 2u);  // all was spent on going on
+  EXPECT_EQ(planner.asked[1].iterations, 41);
+  EXPECT_TRUE(planner.asked[1].is_warm);
+  EXPECT_TRUE(cycle(0.1).cut_short);
+  ASSERT_EQ(planner.asked.size(), 4u);
+  EXPECT_EQ(planner.asked[2].iterations, 21);
+  EXPECT_EQ(planner.asked[2].next_seed, 2);  // goes on where it stopped
+  EXPECT_FALSE(planner.asked[3].is_warm);
+  EXPECT_EQ(planner.asked[3].iterations, 20);
+  EXPECT_EQ(planner.asked[3].next_seed, 0);  // nothing had been tried
+}
+
 TEST(Replanner, BrakesBeforeWhatComesIfThePlannerFindsNone) {
   MovingBallWorld world = NothingThere();
   auto mine = std::make_unique<PlannerThatMayFail>();
