@@ -8,6 +8,7 @@
 #include "sidestep/core/cpu_time.h"
 #include "sidestep/planner/braking.h"
 #include "sidestep/planner/clearance.h"
+#include "sidestep/planner/free_goal.h"
 
 namespace sidestep::planner {
 namespace {
@@ -61,6 +62,11 @@ TrajectoryPoint MoveOn(const std::vector<robot::JointLimits>& limits, const Join
 
 TrajectoryPoint RestAt(const Eigen::VectorXd& q) {
   return {q, Eigen::VectorXd::Zero(q.size()), Eigen::VectorXd::Zero(q.size())};
+}
+
+// Free, within limits, at the goal.
+bool IsAllThatWasAsked(PlanStatus status) {
+  return status == PlanStatus::kSolved || status == PlanStatus::kNotConverged;
 }
 
 bool IsMoving(const JointState& state) { return state.v.cwiseAbs().maxCoeff() > kStill_rad_s; }
@@ -169,6 +175,12 @@ CycleResult CycleWork::Run() const {
               goes_on && task_.searches.anew.cut_short ? task_.budget.HalfOfWhatIsLeft(spent)
                                                        : task_.budget.WhatIsLeft(spent)),
          request->start);
+    const bool wants_time = record.status == ToString(PlanStatus::kOverLimits) ||
+                            record.status == ToString(PlanStatus::kShortOfGoal);
+    if (wants_time && running_ && request->start < t_effect_) {
+      std::optional<PlanResult> result = plan_anew();
+      if (result && IsAllThatWasAsked(result->status)) show(*std::move(result), t_effect_);
+    }
     if (clearance.first_contact && running_) {
       if (request->start < t_effect_) {
         std::optional<PlanResult> result = plan_anew();
@@ -243,6 +255,12 @@ std::optional<PlanRequest> CycleWork::MakeRequest() const {
            .first_contact;
   const double goal_error_rad = (running.q.rightCols<1>() - options_.q_goal).cwiseAbs().maxCoeff();
   if (is_free && goal_error_rad <= kPlannedGoalTolerance_rad) return std::nullopt;
+  // Where it waits for a goal that is blocked, it rests.
+  const EpisodeTime horizon_end = t_effect_ + HorizonOffset(options_.horizon_s);
+  if (is_free && !task_.is_braking &&
+      IsBlocked(planner_.robot(), field_, options_.q_goal, horizon_end)) {
+    return std::nullopt;
+  }
   return anew;
 }
 

@@ -4,7 +4,9 @@
 #include <optional>
 #include <utility>
 
+#include "sidestep/core/goal.h"
 #include "sidestep/planner/first_guess.h"
+#include "sidestep/planner/free_goal.h"
 #include "sidestep/planner/seeds.h"
 
 namespace sidestep::planner {
@@ -14,7 +16,24 @@ namespace {
 // next cycle gets from a warm start.
 constexpr int kTrialIterations = 12;
 
+// Weights of limits, of the usual.
+constexpr double kStiffer[] = {10, 100};
+
 constexpr double kColdTolerance = 1e-3;  // of the first stage, whose result is only a start
+
+bool EndsAt(const Trajectory& trajectory, const Eigen::VectorXd& q_goal) {
+  return (trajectory.q.rightCols<1>() - q_goal).cwiseAbs().maxCoeff() <= kPlannedGoalTolerance_rad;
+}
+
+// Whether the plan that runs does.
+bool LeadsToGoal(const PlanRequest& request) {
+  return request.initial && EndsAt(*request.initial, request.q_goal);
+}
+
+PlanAnswer Near(PlanAnswer answer) {
+  answer.why_short = "the goal is blocked when the horizon ends";
+  return answer;
+}
 
 }  // namespace
 
@@ -63,12 +82,24 @@ class SeededPlanner::Search {
     return std::min(kTrialIterations, planner_.gp().max_iterations);
   }
 
+  // Soft limits give way where much is at stake: those of a free plan that exceeds them get
+  // stiffer.
   Candidate SolveWithLimits(int max_iterations) {
-    optimizer_->AddLimits();
-    const bool converged = Improve(max_iterations, planner_.gp().function_tolerance);
+    Candidate best = SolveWithLimits(1, max_iterations);
+    for (const double stiffness : kStiffer) {
+      if (!best.verdict.is_free() || best.verdict.keeps_limits || IsSpent()) break;
+      Candidate stiffer = SolveWithLimits(stiffness, MostTrialIterations());
+      if (!EndsAt(*stiffer.answer.trajectory, request_.q_goal)) break;  // there is too little time
+      if (planner_.IsBetter(stiffer.verdict, best.verdict)) best = std::move(stiffer);
+    }
+    return best;
+  }
+
+  Candidate SolveWithLimits(double stiffness, int max_iterations) {
+    optimizer_->AddLimits(stiffness);
     PlanAnswer answer;
+    answer.converged = Improve(max_iterations, planner_.gp().function_tolerance);
     answer.trajectory = optimizer_->GetTrajectory();
-    answer.converged = converged;
     answer.cost = optimizer_->ComputeCost();
     return Judged(std::move(answer));
   }
@@ -98,42 +129,70 @@ class SeededPlanner::Search {
   bool was_cut_short_ = false;
 };
 
-bool SeededPlanner::IsWithinLimits(const Verdict& verdict) const {
-  return KeepsWholeLimits(verdict.limit_use, settings());
-}
-
 bool SeededPlanner::IsBetter(const Verdict& a, const Verdict& b) const {
   const auto rank = [this](const Verdict& verdict) {
-    return !verdict.is_free() ? 0 : IsWithinLimits(verdict) ? 2 : 1;
+    if (!verdict.is_free()) return 0;
+    if (verdict.keeps_limits) return 3;
+    return KeepsWholeLimits(verdict.limit_use, settings()) ? 2 : 1;
   };
   if (rank(a) != rank(b)) return rank(a) > rank(b);
   return IsSafer(a.clearance, b.clearance);
 }
 
+std::optional<PlanRequest> SeededPlanner::WithFreeGoal(const PlanRequest& request) const {
+  const EpisodeTime end = request.start + HorizonOffset((request.num_states - 1) * request.step_s);
+  if (!IsBlocked(robot(), *request.field, request.q_goal, end)) return std::nullopt;
+  const std::optional<Eigen::VectorXd> free_goal =
+      FindFreeGoal(robot(), *request.field, settings(), request.q_goal, end);
+  if (!free_goal) return std::nullopt;
+  PlanRequest nearby = request;
+  nearby.q_goal = *free_goal;
+  return nearby;
+}
+
+// A goal is looked at before all else, but for one that the plan that runs leads to: most such
+// plans stay free, and then it is.
 PlanAnswer SeededPlanner::DoPlan(const PlanRequest& request, PlanJudge& judge) const {
+  if (!LeadsToGoal(request)) {
+    if (const std::optional<PlanRequest> nearby = WithFreeGoal(request)) {
+      return Near(TryAll(*nearby, judge));
+    }
+  }
+  return TryAll(request, judge);
+}
+
+PlanAnswer SeededPlanner::TryAll(const PlanRequest& request, PlanJudge& judge) const {
   Search search(*this, request, judge);
   Seeds seeds(request, gp_.num_detours);
-  std::optional<Candidate> best = search.TakeUp();
-  const int first = best ? request.progress.next_seed % seeds.count() : 0;
-  SearchProgress progress;
-  for (int i = 0; i < seeds.count(); ++i) {
-    const int seed = (first + i) % seeds.count();
-    if (!best) {
-      best = search.Solve(seeds.Make(seed), request.initial ? Stages::kWithLimits : Stages::kBoth);
-      continue;
+  std::optional<Candidate> taken_up = search.TakeUp();
+  const int first = taken_up ? request.progress.next_seed % seeds.count() : 0;
+  Candidate best =
+      taken_up ? *std::move(taken_up)
+               : search.Solve(seeds.Make(0), request.initial ? Stages::kWithLimits : Stages::kBoth);
+  if (!best.verdict.is_free() && LeadsToGoal(request)) {
+    if (std::optional<PlanRequest> nearby = WithFreeGoal(request)) {
+      nearby->budget = request.budget.WhatIsLeft(search.spent());
+      PlanAnswer answer = Near(TryAll(*nearby, judge));
+      answer.iterations += search.iterations();
+      answer.spent += search.spent();
+      return answer;
     }
-    const bool is_good = best->verdict.is_free() &&
-                         (request.initial || seeds.IsDetour(seed) || IsWithinLimits(best->verdict));
+  }
+  SearchProgress progress;
+  for (int i = taken_up ? 0 : 1; i < seeds.count(); ++i) {
+    const int seed = (first + i) % seeds.count();
+    const bool is_good = best.verdict.is_free() &&
+                         (request.initial || seeds.IsDetour(seed) || best.verdict.keeps_limits);
     if (is_good) continue;
     if (search.IsSpent()) {
-      progress = {true, seed, TimedPlan{*best->answer.trajectory, request.start}};
+      progress = {true, seed, TimedPlan{*best.answer.trajectory, request.start}};
       break;
     }
-    Candidate other = search.Solve(seeds.Make(seed), Stages::kBoth, &best->verdict.clearance);
-    if (IsBetter(other.verdict, best->verdict)) best = std::move(other);
+    Candidate other = search.Solve(seeds.Make(seed), Stages::kBoth, &best.verdict.clearance);
+    if (IsBetter(other.verdict, best.verdict)) best = std::move(other);
   }
   progress.cut_short = progress.cut_short || search.was_cut_short();
-  PlanAnswer answer = std::move(best->answer);
+  PlanAnswer answer = std::move(best.answer);
   answer.iterations = search.iterations();
   answer.spent = search.spent();
   answer.progress = std::move(progress);

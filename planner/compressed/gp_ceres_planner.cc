@@ -25,8 +25,9 @@ class CompressedOptimizer final : public TrajectoryOptimizer {
     states << guess.q, guess.v;
     problem_ = std::make_unique<CompressedProblem>(*objective_, states);
   }
-  void AddLimits() override {
-    objective_->AddLimits(SoftLimitsOf(robot_, request_.q_start, request_.q_goal, settings_));
+  void AddLimits(double stiffness) override {
+    objective_->AddLimits(
+        SoftLimitsOf(robot_, request_.q_start, request_.q_goal, settings_, stiffness));
   }
   SolveOutcome Solve(int max_iterations, double function_tolerance) override {
     return SolveByLevenbergMarquardt(problem_->problem(), max_iterations, function_tolerance,

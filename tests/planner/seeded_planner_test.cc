@@ -34,7 +34,7 @@ class IdleOptimizer final : public TrajectoryOptimizer {
     log_.guesses.push_back(guess);
     guess_ = guess;
   }
-  void AddLimits() override {}
+  void AddLimits(double) override {}
   SolveOutcome Solve(int max_iterations, double) override {
     ++log_.num_solves;
     return {std::min(max_iterations, kIterations), max_iterations >= kIterations};
