@@ -339,17 +339,23 @@ class Loop {
     begun_ = {now_s_, expected, model_->MakeField()};
     planner::CycleTask task = replanner_.Prepare(EpisodeTime(now_s_), world_.robot->Read(),
                                                  expected, goal_, begun_.field);
-    if (is_real_time_) task.budget.deadline = DeadlineOf(expected);
+    task.budget = BudgetOf(expected);
     worker_->Begin([this, task = std::move(task)] { return replanner_.Work(task); });
     if (!is_real_time_) TakeCycle();
   }
 
   // Of a cycle that begins now: a plan that is good enough in time is worth more than a better one
-  // that is dropped.
-  static std::chrono::steady_clock::time_point DeadlineOf(HorizonOffset latency) {
-    const std::chrono::duration<double> left(kPlanningShare * latency.seconds() - kHandOver_s);
-    return std::chrono::steady_clock::now() +
-           std::chrono::duration_cast<std::chrono::steady_clock::duration>(left);
+  // that is dropped. Only where time is real does a clock say when.
+  planner::PlanBudget BudgetOf(HorizonOffset latency) const {
+    planner::PlanBudget budget;
+    if (is_real_time_) {
+      const std::chrono::duration<double> left(kPlanningShare * latency.seconds() - kHandOver_s);
+      budget.deadline = std::chrono::steady_clock::now() +
+                        std::chrono::duration_cast<std::chrono::steady_clock::duration>(left);
+    } else if (scenario_.most_iterations > 0) {
+      budget.iterations = scenario_.most_iterations;
+    }
+    return budget;
   }
 
   // Takes the result of a cycle, if one is there.
@@ -366,12 +372,14 @@ class Loop {
       record.accepted = false;
       record.status = kLate;
       ++result_.late_plans;
-    } else if (cycle->plan) {
+    } else {
       replanner_.Accept(*cycle);
       // It agrees with what runs until it takes effect, or begins then. On a wall clock, where
       // nobody may be looking at that very moment, the robot has it before.
-      pending_.push_back({*cycle->plan, is_real_time_ ? now_s_ : effect_s});
-      pending_.back().plan.start = cycle->plan->start - lag_;
+      if (cycle->plan) {
+        pending_.push_back({*cycle->plan, is_real_time_ ? now_s_ : effect_s});
+        pending_.back().plan.start = cycle->plan->start - lag_;
+      }
     }
     ScheduleCycle(begun_.t_s + took_s);
     record.objects = model_->DescribeObjects(planner::TimesToDescribe(record));

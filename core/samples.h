@@ -55,6 +55,9 @@ struct CycleRecord {
   std::string reason;                ///< why there is no plan; else empty
   bool accepted = false;             ///< whether the plan was given to the robot
   int iterations = 0;                ///< of the optimiser
+  /// Its budget was spent before all was tried that there was to try: without one it would have
+  /// gone on, and been late.
+  bool cut_short = false;
   double cost = 0;                   ///< final, of the whole objective
   double predicted_clearance_m = 0;  ///< least along the plan, in the predicted field
   int samples_outside_grid = 0;      ///< positions of spheres along the plan that no map covers

@@ -20,7 +20,8 @@ class BudgetWatch final : public ceres::IterationCallback {
 }  // namespace
 
 SolveOutcome SolveByLevenbergMarquardt(ceres::Problem& problem, int max_iterations,
-                                       double function_tolerance, const PlanBudget& budget) {
+                                       double function_tolerance, const PlanBudget& budget,
+                                       ceres::IterationCallback* may_end) {
   BudgetWatch watch(budget);
   ceres::Solver::Options options;
   options.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
@@ -32,10 +33,15 @@ SolveOutcome SolveByLevenbergMarquardt(ceres::Problem& problem, int max_iteratio
   options.function_tolerance = function_tolerance;
   options.logging_type = ceres::SILENT;
   options.callbacks = {&watch};
+  if (may_end != nullptr) {
+    options.callbacks.push_back(may_end);
+    options.update_state_every_iteration = true;
+  }
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
+  const bool was_ended = summary.termination_type == ceres::USER_SUCCESS && !budget.IsTimeUp();
   return {static_cast<int>(summary.iterations.size()) - 1,
-          summary.termination_type == ceres::CONVERGENCE};
+          summary.termination_type == ceres::CONVERGENCE || was_ended};
 }
 
 }  // namespace sidestep::planner

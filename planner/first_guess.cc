@@ -47,19 +47,20 @@ Trajectory MakeFreePart(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
   throw std::invalid_argument("unknown Timing");
 }
 
+// The request's grid, with what is fixed there. What is free has yet to be filled in.
+Trajectory FixedPart(const PlanRequest& request) {
+  if (request.initial) return MakeWarmStart(request);
+  const int K = request.num_states;
+  return {Eigen::VectorXd::LinSpaced(K, 0, K - 1) * request.step_s, request.q_start.replicate(1, K),
+          request.v_start.replicate(1, K)};
+}
+
 // The request's fixed states, then the motion that `make_free_part` gives from the last of them,
 // (q, v), in a given time.
 template <class MakeFreePartFn>
 Trajectory Complete(const PlanRequest& request, const MakeFreePartFn& make_free_part) {
   const int K = request.num_states, last_fixed = request.num_fixed - 1;
-  Trajectory motion;
-  if (request.initial) {
-    motion = MakeWarmStart(request);
-  } else {
-    motion.t_s = Eigen::VectorXd::LinSpaced(K, 0, K - 1) * request.step_s;
-    motion.q = request.q_start.replicate(1, K);
-    motion.v = request.v_start.replicate(1, K);
-  }
+  Trajectory motion = FixedPart(request);
   const Trajectory free_part = make_free_part(motion.q.col(last_fixed), motion.v.col(last_fixed),
                                               motion.t_s(K - 1) - motion.t_s(last_fixed));
   for (int k = request.num_fixed; k < K; ++k) {
@@ -89,6 +90,17 @@ Trajectory MakeDetour(const PlanRequest& request, RandomStream& random) {
     return FromKnots(
         {{0, q, v}, {via_s, q_via, way / duration_s}, {duration_s, request.q_goal, rest}});
   });
+}
+
+Trajectory MakeContinuation(const PlanRequest& request, const TimedPlan& plan) {
+  Trajectory motion = FixedPart(request);
+  for (int k = request.num_fixed; k < request.num_states; ++k) {
+    const EpisodeTime t = request.start + HorizonOffset(motion.t_s(k));
+    const TrajectoryPoint point = Sample(plan.trajectory, t - plan.start);
+    motion.q.col(k) = point.q;
+    motion.v.col(k) = point.v;
+  }
+  return motion;
 }
 
 Trajectory MakeWarmStart(const PlanRequest& request) {

@@ -25,6 +25,10 @@ Trajectory MakeDirectMotion(const PlanRequest& request, Timing timing);
 /// what no other timing avoids. Ignores obstacles and limits.
 Trajectory MakeDetour(const PlanRequest& request, RandomStream& random);
 
+/// The request's fixed states, then what `plan` does at their times: an answer to another request
+/// as a guess for this one.
+Trajectory MakeContinuation(const PlanRequest& request, const TimedPlan& plan);
+
 /// The request's `initial`, its state 0 replaced by (q_start, v_start). There must be one.
 Trajectory MakeWarmStart(const PlanRequest& request);
 

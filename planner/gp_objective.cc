@@ -6,8 +6,8 @@ namespace sidestep::planner {
 namespace {
 
 // Weights of the limit costs [1/rad, s/rad, s^2/rad]. In the walkway scene at 1.2 to 2.0 m/s plans
-// exceed the scaled limits by at most 2 % of the limit, which the scales leave room for; ten times
-// the weights take two to three times the iterations for the same plans.
+// exceed what they are drawn to by at most 2 % of it; ten times the weights take two to three times
+// the iterations for the same plans.
 constexpr double kPositionWeight = 1000;
 constexpr double kVelocityWeight = 30;
 constexpr double kAccelerationWeight = 5;
@@ -15,8 +15,10 @@ constexpr double kAccelerationWeight = 5;
 // Links keep this far apart: spheres leave gaps between them and the shapes (docs/robots.md).
 constexpr double kSelfEpsilon_m = 0.05;
 
-// Soft costs give way a little: they begin this far inside the robot's position limits.
+// Soft costs give way a little: they begin this far inside the robot's position limits, and at this
+// share of the velocity and the acceleration that are asked for.
 constexpr double kPositionMargin_rad = 0.02;
+constexpr double kDynamicShare = 0.97;
 
 }  // namespace
 
@@ -48,13 +50,14 @@ GpProblemOptions ObjectiveOf(const PlannerSettings& settings, const GpSettings& 
 }
 
 SoftLimits SoftLimitsOf(const robot::RobotModel& robot, const Eigen::VectorXd& q_start,
-                        const Eigen::VectorXd& q_goal, const PlannerSettings& settings) {
+                        const Eigen::VectorXd& q_goal, const PlannerSettings& settings,
+                        double stiffness) {
   LimitWeights weights;
-  if (settings.position_limits) weights.position = kPositionWeight;
-  if (settings.velocity_limits) weights.velocity = kVelocityWeight;
-  if (settings.acceleration_limits) weights.acceleration = kAccelerationWeight;
-  return MakeSoftLimits(robot, q_start, q_goal, weights, settings.velocity_scale,
-                        settings.acceleration_scale);
+  if (settings.position_limits) weights.position = stiffness * kPositionWeight;
+  if (settings.velocity_limits) weights.velocity = stiffness * kVelocityWeight;
+  if (settings.acceleration_limits) weights.acceleration = stiffness * kAccelerationWeight;
+  return MakeSoftLimits(robot, q_start, q_goal, weights, kDynamicShare * settings.velocity_scale,
+                        kDynamicShare * settings.acceleration_scale);
 }
 
 }  // namespace sidestep::planner

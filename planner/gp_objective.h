@@ -44,9 +44,13 @@ SoftLimits MakeSoftLimits(const robot::RobotModel& robot, const Eigen::VectorXd&
                           const Eigen::VectorXd& q_goal, const LimitWeights& weights,
                           double velocity_scale, double acceleration_scale);
 
-/// What planners make of their settings, whatever solves it: links are kept 0.05 m apart.
+/// What planners make of their settings, whatever solves it: links are kept 0.05 m apart, and a
+/// motion to 0.97 of the velocities and accelerations that are asked for, since soft limits give
+/// way a little.
 GpProblemOptions ObjectiveOf(const PlannerSettings& settings, const GpSettings& gp);
+/// @param stiffness weights are so many times the usual.
 SoftLimits SoftLimitsOf(const robot::RobotModel& robot, const Eigen::VectorXd& q_start,
-                        const Eigen::VectorXd& q_goal, const PlannerSettings& settings);
+                        const Eigen::VectorXd& q_goal, const PlannerSettings& settings,
+                        double stiffness);
 
 }  // namespace sidestep::planner

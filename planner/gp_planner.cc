@@ -20,8 +20,9 @@ class CeresOptimizer final : public TrajectoryOptimizer {
     problem_.reset();
     problem_.emplace(robot_, request_, guess, options_);
   }
-  void AddLimits() override {
-    problem_->AddLimits(SoftLimitsOf(robot_, request_.q_start, request_.q_goal, settings_));
+  void AddLimits(double stiffness) override {
+    problem_->AddLimits(
+        SoftLimitsOf(robot_, request_.q_start, request_.q_goal, settings_, stiffness));
   }
   SolveOutcome Solve(int max_iterations, double function_tolerance) override {
     return SolveByLevenbergMarquardt(problem_->problem(), max_iterations, function_tolerance,

@@ -1,5 +1,6 @@
 #include "sidestep/planner/plan_request.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -43,6 +44,22 @@ bool PlanBudget::IsSpent(int iterations_done) const {
   return iterations_done >= iterations || IsTimeUp();
 }
 
+PlanBudget PlanBudget::WhatIsLeft(int iterations_done) const {
+  PlanBudget left = *this;
+  left.iterations = std::max(1, iterations - iterations_done);
+  return left;
+}
+
+PlanBudget PlanBudget::HalfOfWhatIsLeft(int iterations_done) const {
+  PlanBudget half = WhatIsLeft(iterations_done);
+  half.iterations -= half.iterations / 2;
+  if (deadline) {
+    const auto now = std::chrono::steady_clock::now();
+    half.deadline = now + (*deadline - now) / 2;
+  }
+  return half;
+}
+
 bool PlanBudget::IsTimeUp() const {
   return (stop != nullptr && stop->load()) ||
          (deadline && std::chrono::steady_clock::now() >= *deadline);
@@ -60,6 +77,12 @@ void CheckPlanRequest(const PlanRequest& request, int n) {
   Require(request.num_fixed >= 1 && request.num_fixed < request.num_states,
           "num_fixed must be >= 1 and < num_states");
   Require(request.budget.iterations >= 1, "budget.iterations must be >= 1");
+  Require(request.progress.next_seed >= 0, "progress.next_seed must be >= 0");
+  if (request.progress.best) {
+    CheckTrajectory(request.progress.best->trajectory);
+    Require(request.progress.best->trajectory.num_joints() == n,
+            "progress.best must have as many joints as the robot");
+  }
   if (!request.initial) {
     Require(request.num_fixed == 1 || request.v_start.isZero(0),
             "without an initial guess, several fixed states need a start at rest");

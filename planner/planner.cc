@@ -7,12 +7,15 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sidestep/core/goal.h"
+
 namespace sidestep::planner {
 namespace {
 
-PlanStatus StatusOf(const Verdict& verdict, bool converged) {
+PlanStatus StatusOf(const Verdict& verdict, bool is_short, bool converged) {
   if (!verdict.is_free()) return PlanStatus::kInCollision;
   if (!verdict.keeps_limits) return PlanStatus::kOverLimits;
+  if (is_short) return PlanStatus::kShortOfGoal;
   return converged ? PlanStatus::kSolved : PlanStatus::kNotConverged;
 }
 
@@ -24,6 +27,8 @@ std::string ToString(PlanStatus status) {
       return "solved";
     case PlanStatus::kNotConverged:
       return "not_converged";
+    case PlanStatus::kShortOfGoal:
+      return "short_of_goal";
     case PlanStatus::kOverLimits:
       return "over_limits";
     case PlanStatus::kInCollision:
@@ -69,8 +74,10 @@ PlanResult Planner::Plan(const PlanRequest& request) const {
     return result;
   }
   result.iterations = answer.iterations;
+  result.spent = std::max(answer.spent, answer.iterations);
+  result.progress = std::move(answer.progress);
   if (!answer.trajectory) {
-    if (request.budget.IsSpent(answer.iterations)) result.status = PlanStatus::kTimedOut;
+    if (request.budget.IsSpent(result.spent)) result.status = PlanStatus::kTimedOut;
     result.reason = answer.why_none.empty() ? "found no plan" : std::move(answer.why_none);
     return result;
   }
@@ -78,7 +85,14 @@ PlanResult Planner::Plan(const PlanRequest& request) const {
   if (!result.reason.empty()) return result;
 
   const Verdict verdict = judge.Judge(*answer.trajectory);
-  result.status = StatusOf(verdict, answer.converged);
+  const double goal_error_rad =
+      (answer.trajectory->q.rightCols<1>() - request.q_goal).cwiseAbs().maxCoeff();
+  const bool is_short = capabilities().reaches_goal && goal_error_rad > kPlannedGoalTolerance_rad;
+  result.status = StatusOf(verdict, is_short, answer.converged);
+  if (is_short) {
+    result.reason = answer.why_short.empty() ? "it ends elsewhere than at the goal"
+                                             : std::move(answer.why_short);
+  }
   result.trajectory = std::move(answer.trajectory);
   result.cost = answer.cost;
   result.clearance = verdict.clearance;

@@ -18,12 +18,14 @@ namespace sidestep::planner {
 enum class PlanStatus {
   kSolved,        ///< the planner stopped by itself and the plan is free in the given field
   kNotConverged,  ///< free, but the budget or a cap was reached: the best so far
+  kShortOfGoal,   ///< free and within limits, but it ends elsewhere: the goal is blocked
   kOverLimits,    ///< free, but it exceeds a limit that the settings ask to keep
   kInCollision,   ///< it touches something in the given field
   kTimedOut,      ///< no plan: the budget was spent before there was one
   kFailed         ///< no plan, or none that answers the request
 };
-/// "solved", "not_converged", "over_limits", "in_collision", "timed_out", "failed".
+/// "solved", "not_converged", "short_of_goal", "over_limits", "in_collision", "timed_out",
+/// "failed".
 std::string ToString(PlanStatus status);
 
 struct PlanCost {
@@ -36,16 +38,22 @@ struct PlanAnswer {
   std::optional<Trajectory> trajectory = {};  ///< on the request's grid; none if none was found
   bool converged = false;  ///< it stopped by itself, not at a cap or a spent budget
   int iterations = 0;      ///< of all solves together
+  int spent = 0;           ///< of the budget's iterations; at least as many
+  SearchProgress progress = {};
   /// Each part half the sum of squared residuals; what only fixed states decide is left out.
   PlanCost cost = {};
-  std::string why_none = {};  ///< for a person, where there is no trajectory
+  // For a person:
+  std::string why_none = {};   ///< where there is no trajectory
+  std::string why_short = {};  ///< where it ends elsewhere than at the goal
 };
 
 struct PlanResult {
   PlanStatus status = PlanStatus::kFailed;
   std::optional<Trajectory> trajectory;  ///< finite, on the request's grid; none: see `reason`
-  std::string reason;                    ///< why there is none
+  std::string reason;                    ///< why there is none, or why it ends short of the goal
   int iterations = 0;
+  int spent = 0;            ///< of the budget's iterations
+  SearchProgress progress;  ///< for the next request
   PlanCost cost;
   Clearance clearance;  ///< of the free part, in the field; without a trajectory, none measured
   LimitUse limit_use;   ///< of the free part, of the robot's own limits
@@ -53,7 +61,8 @@ struct PlanResult {
 
 /// What a planner can do beyond what every planner promises; tests hold it to what it declares.
 struct PlannerCapabilities {
-  bool reaches_goal = false;      ///< its plans end at the goal, at rest, whatever is in the way
+  bool reaches_goal =
+      false;  ///< its plans end at rest at the goal, unless they are said to end short
   bool avoids_obstacles = false;  ///< it looks for a plan that is free
 };
 

@@ -8,6 +8,7 @@
 #include "sidestep/core/cpu_time.h"
 #include "sidestep/planner/braking.h"
 #include "sidestep/planner/clearance.h"
+#include "sidestep/planner/free_goal.h"
 
 namespace sidestep::planner {
 namespace {
@@ -61,6 +62,11 @@ TrajectoryPoint MoveOn(const std::vector<robot::JointLimits>& limits, const Join
 
 TrajectoryPoint RestAt(const Eigen::VectorXd& q) {
   return {q, Eigen::VectorXd::Zero(q.size()), Eigen::VectorXd::Zero(q.size())};
+}
+
+// Free, within limits, at the goal.
+bool IsAllThatWasAsked(PlanStatus status) {
+  return status == PlanStatus::kSolved || status == PlanStatus::kNotConverged;
 }
 
 bool IsMoving(const JointState& state) { return state.v.cwiseAbs().maxCoeff() > kStill_rad_s; }
@@ -120,13 +126,28 @@ CycleResult CycleWork::Run() const {
   CycleRecord& record = cycle.record;
   TimedPlan shown = present;
   Clearance clearance;  // of what is shown
-  // Once the budget is spent there is still one iteration, so that there is an answer.
-  const auto plan = [&](PlanRequest to_plan) {
-    to_plan.budget = task_.budget;
-    to_plan.budget.iterations = std::max(1, task_.budget.iterations - record.iterations);
+  int spent = 0;
+  // One search: where the cycle before left it, with so much of the budget.
+  const auto plan = [&](PlanRequest to_plan, SearchProgress CycleSearches::*search,
+                        const PlanBudget& budget) {
+    to_plan.budget = budget;
+    to_plan.progress = task_.searches.*search;
     PlanResult result = planner_.Plan(to_plan);
+    spent += result.spent;
     record.iterations += result.iterations;
+    record.cut_short = record.cut_short || result.progress.cut_short;
+    cycle.searches.*search = result.progress;
     return result;
+  };
+  // Not worth beginning once all is spent: then the next cycle keeps something for it.
+  const auto plan_anew = [&]() -> std::optional<PlanResult> {
+    if (!task_.budget.IsSpent(spent)) {
+      return plan(NewHorizon(t_effect_, expected_.q, expected_.v), &CycleSearches::anew,
+                  task_.budget.WhatIsLeft(spent));
+    }
+    if (task_.searches.anew.cut_short) cycle.searches.anew = task_.searches.anew;
+    cycle.searches.anew.cut_short = record.cut_short = true;
+    return std::nullopt;
   };
   // Whether a robot at its goal may stay as long as it is asked to, and find a way out then.
   const auto may_stay = [&] {
@@ -134,7 +155,8 @@ CycleResult CycleWork::Run() const {
     const EpisodeTime until = StayUntil();
     if (until <= t_effect_ || measure(present, until).first_contact) return false;
     const TrajectoryPoint there = Sample(present.trajectory, until - present.start);
-    const PlanResult way_out = plan(NewHorizon(until, there.q, there.v));
+    const PlanResult way_out = plan(NewHorizon(until, there.q, there.v), &CycleSearches::way_out,
+                                    task_.budget.HalfOfWhatIsLeft(spent));
     return way_out.trajectory && !way_out.clearance.first_contact;
   };
   const auto request = MakeRequest();
@@ -148,12 +170,22 @@ CycleResult CycleWork::Run() const {
       if (is_new) shown = {*std::move(result.trajectory), start};
       clearance = is_new ? result.clearance : measure(present, EndOf(present));
     };
-    show(plan(*request), request->start);
+    const bool goes_on = request->initial.has_value();
+    show(plan(*request, goes_on ? &CycleSearches::going_on : &CycleSearches::anew,
+              goes_on && task_.searches.anew.cut_short ? task_.budget.HalfOfWhatIsLeft(spent)
+                                                       : task_.budget.WhatIsLeft(spent)),
+         request->start);
+    const bool wants_time = record.status == ToString(PlanStatus::kOverLimits) ||
+                            record.status == ToString(PlanStatus::kShortOfGoal);
+    if (wants_time && running_ && request->start < t_effect_) {
+      std::optional<PlanResult> result = plan_anew();
+      if (result && IsAllThatWasAsked(result->status)) show(*std::move(result), t_effect_);
+    }
     if (clearance.first_contact && running_) {
       if (request->start < t_effect_) {
-        PlanResult result = plan(NewHorizon(t_effect_, expected_.q, expected_.v));
-        if (result.trajectory && IsSafer(result.clearance, clearance)) {
-          show(std::move(result), t_effect_);
+        std::optional<PlanResult> result = plan_anew();
+        if (result && result->trajectory && IsSafer(result->clearance, clearance)) {
+          show(*std::move(result), t_effect_);
         }
       }
       TimedPlan brake = Brake();
@@ -223,6 +255,12 @@ std::optional<PlanRequest> CycleWork::MakeRequest() const {
            .first_contact;
   const double goal_error_rad = (running.q.rightCols<1>() - options_.q_goal).cwiseAbs().maxCoeff();
   if (is_free && goal_error_rad <= kPlannedGoalTolerance_rad) return std::nullopt;
+  // Where it waits for a goal that is blocked, it rests.
+  const EpisodeTime horizon_end = t_effect_ + HorizonOffset(options_.horizon_s);
+  if (is_free && !task_.is_braking &&
+      IsBlocked(planner_.robot(), field_, options_.q_goal, horizon_end)) {
+    return std::nullopt;
+  }
   return anew;
 }
 

@@ -23,10 +23,12 @@ struct ReplannerOptions {
   int num_states() const;  ///< of a whole horizon
 };
 
-/// A plan, and when it begins: its state k is at start + t_s(k).
-struct TimedPlan {
-  Trajectory trajectory;
-  EpisodeTime start;
+/// What a cycle may search for, and where each search is to be taken up if the cycle before ran out
+/// of budget. Equal for all else.
+struct CycleSearches {
+  SearchProgress way_out;   ///< from the goal, once the robot has stayed there
+  SearchProgress going_on;  ///< from the plan that runs
+  SearchProgress anew;      ///< with a new horizon
 };
 
 /// All that one planning cycle starts from, as values: it may be worked on in another thread, or
@@ -40,6 +42,7 @@ struct CycleTask {
   std::optional<TimedPlan> running;  ///< what the robot follows
   bool is_braking = false;           ///< what it follows leads to no goal
   PlanBudget budget = {};            ///< of all plans of the cycle together
+  CycleSearches searches = {};       ///< as the cycle before left them
 };
 
 struct CycleResult {
@@ -51,6 +54,7 @@ struct CycleResult {
   /// the one found, or else the one kept, with that one's clearance from the moment of effect on.
   /// Its objects are left to whoever made the field.
   CycleRecord record;
+  CycleSearches searches;
   double optimise_s = 0;  ///< CPU seconds of this thread, for the report only
 };
 
@@ -64,17 +68,23 @@ struct CycleResult {
 /// first one takes effect; one that moves stops meanwhile.
 ///
 /// With fewer than 3 states left to choose, the running plan is kept, unless it does not lead to
-/// the goal or is predicted to hit something: then a new horizon begins at the moment of effect,
-/// from the state that the robot will have there. Once at rest at the goal, the robot looks one
-/// horizon ahead and steps aside likewise; but not before it has dwelt there, unless it
-/// would be touched in that time, or no way out would be left after it. A robot found further than
-/// 0.1 rad from its plan gets a new horizon from where it will be at the moment of effect if it
-/// moves on as it does, within its limits.
+/// the goal, though that is not blocked, or is predicted to hit something: then a new horizon
+/// begins at the moment of effect, from the state that the robot will have there. Once at rest at
+/// the goal, the robot looks one horizon ahead and steps aside likewise; but not before it has
+/// dwelt there, unless it would be touched in that time, or no way out would be left after it. A
+/// robot found further than 0.1 rad from its plan gets a new horizon from where it will be at the
+/// moment of effect if it moves on as it does, within its limits.
 ///
-/// A plan is taken if it is predicted to be free. If it is not, two ways out are weighed as well: a
-/// new horizon to the goal, which may have more time and begins with another guess; and to brake
-/// (see braking.h) and wait. Then the safest is taken (see clearance.h), and none if going on with
-/// what runs is as safe. A robot that brakes or waits looks for new horizons alone.
+/// A plan is taken if it is predicted to be free. If it is, but exceeds a limit that it was asked
+/// to keep or ends short of a goal that is blocked, a new horizon is tried as well, which has more
+/// time, and taken if it does neither. If the plan is not free, two ways out are weighed: a new
+/// horizon to the goal, which may have more time and begins with another guess; and to brake (see
+/// braking.h) and wait. Then the safest is taken (see clearance.h), and none if going on with what
+/// runs is as safe. A robot that brakes or waits looks for new horizons alone.
+///
+/// All searches share the budget. Whether the robot may stay at its goal is not worth more than
+/// half of it; nor, where the cycle before came to a new horizon too late, is going on from what
+/// runs.
 CycleResult RunCycle(const Planner& planner, const ReplannerOptions& options,
                      const CycleTask& task);
 

@@ -28,7 +28,9 @@ CycleTask Replanner::Prepare(EpisodeTime now, const JointState& state, HorizonOf
                              std::shared_ptr<const sdf::DistanceField> field) const {
   EpisodeTime t_effect = now + latency;
   if (running_) t_effect = std::max(t_effect, running_->start);
-  return {now, t_effect, state, goal, std::move(field), running_, is_braking_};
+  CycleTask task = {now, t_effect, state, goal, std::move(field), running_, is_braking_};
+  task.searches = searches_;
+  return task;
 }
 
 CycleResult Replanner::Work(const CycleTask& task) const {
@@ -38,6 +40,7 @@ CycleResult Replanner::Work(const CycleTask& task) const {
 void Replanner::Forget() {
   running_.reset();
   is_braking_ = false;
+  searches_ = {};
 }
 
 void Replanner::Delay(HorizonOffset by) {
@@ -45,6 +48,7 @@ void Replanner::Delay(HorizonOffset by) {
 }
 
 void Replanner::Accept(const CycleResult& result) {
+  searches_ = result.searches;
   if (!result.plan) return;
   running_ = result.plan;
   is_braking_ = result.is_braking;

@@ -35,8 +35,8 @@ class Replanner {
   /// The robot follows its plan later than it did, for having slowed down.
   void Delay(HorizonOffset by);
 
-  /// From now on the result's plan is the one that runs, if it has one. A result that is not
-  /// accepted (it came too late) changes nothing.
+  /// From now on the result's plan is the one that runs, if it has one, and its searches are gone
+  /// on with. A result that is not accepted (it came too late) changes nothing.
   void Accept(const CycleResult& result);
 
  private:
@@ -44,6 +44,7 @@ class Replanner {
   ReplannerOptions options_;
   std::optional<TimedPlan> running_;
   bool is_braking_ = false;
+  CycleSearches searches_;  // as the last cycle left them
 };
 
 }  // namespace sidestep::planner

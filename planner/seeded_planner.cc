@@ -1,12 +1,13 @@
 #include "sidestep/planner/seeded_planner.h"
 
 #include <algorithm>
-#include <bit>
-#include <cstdint>
+#include <optional>
 #include <utility>
-#include <vector>
 
+#include "sidestep/core/goal.h"
 #include "sidestep/planner/first_guess.h"
+#include "sidestep/planner/free_goal.h"
+#include "sidestep/planner/seeds.h"
 
 namespace sidestep::planner {
 namespace {
@@ -15,10 +16,23 @@ namespace {
 // next cycle gets from a warm start.
 constexpr int kTrialIterations = 12;
 
+// Weights of limits, of the usual.
+constexpr double kStiffer[] = {10, 100};
+
 constexpr double kColdTolerance = 1e-3;  // of the first stage, whose result is only a start
 
-EpisodeTime FirstFreeTime(const PlanRequest& request) {
-  return request.start + HorizonOffset(request.num_fixed * request.step_s);
+bool EndsAt(const Trajectory& trajectory, const Eigen::VectorXd& q_goal) {
+  return (trajectory.q.rightCols<1>() - q_goal).cwiseAbs().maxCoeff() <= kPlannedGoalTolerance_rad;
+}
+
+// Whether the plan that runs does.
+bool LeadsToGoal(const PlanRequest& request) {
+  return request.initial && EndsAt(*request.initial, request.q_goal);
+}
+
+PlanAnswer Near(PlanAnswer answer) {
+  answer.why_short = "the goal is blocked when the horizon ends";
+  return answer;
 }
 
 }  // namespace
@@ -33,32 +47,72 @@ class SeededPlanner::Search {
         optimizer_(planner.MakeOptimizer(request)) {}
 
   int iterations() const { return iterations_; }
-  bool IsSpent() const { return request_.budget.IsSpent(iterations_); }
+  int spent() const { return iterations_ + num_solves_; }
+  bool IsSpent() const { return request_.budget.IsSpent(spent()); }
+  /// Whether a solve ended for want of budget alone.
+  bool was_cut_short() const { return was_cut_short_; }
+
+  /// What the last search, which was cut short, had found so far, improved a little; none if there
+  /// was none, or the plan that runs has become free: then it is improved like any other.
+  std::optional<Candidate> TakeUp() {
+    const SearchProgress& progress = request_.progress;
+    if (!progress.cut_short || progress.next_seed == 0 || !progress.best) return std::nullopt;
+    if (request_.initial && judge_.Judge(MakeWarmStart(request_)).is_free()) return std::nullopt;
+    optimizer_->Restart(MakeContinuation(request_, *progress.best));
+    return SolveWithLimits(MostTrialIterations());
+  }
 
   /// With `to_beat` it is a trial, for one of many seeds: few iterations, and it gives up after the
   /// first stage if that touches something and is not safer.
   Candidate Solve(const Trajectory& guess, Stages stages, const Clearance* to_beat = nullptr) {
     optimizer_->Restart(guess);
-    const int max_iterations = to_beat ? std::min(kTrialIterations, planner_.gp().max_iterations)
-                                       : planner_.gp().max_iterations;
+    const int max_iterations = to_beat ? MostTrialIterations() : planner_.gp().max_iterations;
     if (stages != Stages::kWithLimits) Improve(max_iterations, kColdTolerance);
     if (to_beat) {
-      Candidate first = Judged({.trajectory = optimizer_->GetTrajectory()});
+      PlanAnswer answer;
+      answer.trajectory = optimizer_->GetTrajectory();
+      Candidate first = Judged(std::move(answer));
       if (!first.verdict.is_free() && !IsSafer(first.verdict.clearance, *to_beat)) return first;
     }
-    optimizer_->AddLimits();
-    const bool converged = Improve(max_iterations, planner_.gp().function_tolerance);
-    return Judged({.trajectory = optimizer_->GetTrajectory(),
-                   .converged = converged,
-                   .cost = optimizer_->ComputeCost()});
+    return SolveWithLimits(max_iterations);
   }
 
  private:
+  int MostTrialIterations() const {
+    return std::min(kTrialIterations, planner_.gp().max_iterations);
+  }
+
+  // Soft limits give way where much is at stake: those of a free plan that exceeds them get
+  // stiffer.
+  Candidate SolveWithLimits(int max_iterations) {
+    Candidate best = SolveWithLimits(1, max_iterations);
+    for (const double stiffness : kStiffer) {
+      if (!best.verdict.is_free() || best.verdict.keeps_limits || IsSpent()) break;
+      Candidate stiffer = SolveWithLimits(stiffness, MostTrialIterations());
+      if (!EndsAt(*stiffer.answer.trajectory, request_.q_goal)) break;  // there is too little time
+      if (planner_.IsBetter(stiffer.verdict, best.verdict)) best = std::move(stiffer);
+    }
+    return best;
+  }
+
+  Candidate SolveWithLimits(double stiffness, int max_iterations) {
+    optimizer_->AddLimits(stiffness);
+    PlanAnswer answer;
+    answer.converged = Improve(max_iterations, planner_.gp().function_tolerance);
+    answer.trajectory = optimizer_->GetTrajectory();
+    answer.cost = optimizer_->ComputeCost();
+    return Judged(std::move(answer));
+  }
+
   bool Improve(int max_iterations, double function_tolerance) {
-    const int left = request_.budget.iterations - iterations_;
+    const int left = std::max(0, request_.budget.iterations - spent());
     const SolveOutcome outcome =
         optimizer_->Solve(std::min(max_iterations, left), function_tolerance);
     iterations_ += outcome.iterations;
+    ++num_solves_;
+    if (!outcome.converged && (left < max_iterations || request_.budget.IsTimeUp())) {
+      was_cut_short_ = true;
+    }
     return outcome.converged;
   }
 
@@ -71,50 +125,78 @@ class SeededPlanner::Search {
   const PlanRequest& request_;
   PlanJudge& judge_;
   std::unique_ptr<TrajectoryOptimizer> optimizer_;
-  int iterations_ = 0;
+  int iterations_ = 0, num_solves_ = 0;
+  bool was_cut_short_ = false;
 };
-
-bool SeededPlanner::IsWithinLimits(const Verdict& verdict) const {
-  return KeepsWholeLimits(verdict.limit_use, settings());
-}
 
 bool SeededPlanner::IsBetter(const Verdict& a, const Verdict& b) const {
   const auto rank = [this](const Verdict& verdict) {
-    return !verdict.is_free() ? 0 : IsWithinLimits(verdict) ? 2 : 1;
+    if (!verdict.is_free()) return 0;
+    if (verdict.keeps_limits) return 3;
+    return KeepsWholeLimits(verdict.limit_use, settings()) ? 2 : 1;
   };
   if (rank(a) != rank(b)) return rank(a) > rank(b);
   return IsSafer(a.clearance, b.clearance);
 }
 
+std::optional<PlanRequest> SeededPlanner::WithFreeGoal(const PlanRequest& request) const {
+  const EpisodeTime end = request.start + HorizonOffset((request.num_states - 1) * request.step_s);
+  if (!IsBlocked(robot(), *request.field, request.q_goal, end)) return std::nullopt;
+  const std::optional<Eigen::VectorXd> free_goal =
+      FindFreeGoal(robot(), *request.field, settings(), request.q_goal, end);
+  if (!free_goal) return std::nullopt;
+  PlanRequest nearby = request;
+  nearby.q_goal = *free_goal;
+  return nearby;
+}
+
+// A goal is looked at before all else, but for one that the plan that runs leads to: most such
+// plans stay free, and then it is.
 PlanAnswer SeededPlanner::DoPlan(const PlanRequest& request, PlanJudge& judge) const {
+  if (!LeadsToGoal(request)) {
+    if (const std::optional<PlanRequest> nearby = WithFreeGoal(request)) {
+      return Near(TryAll(*nearby, judge));
+    }
+  }
+  return TryAll(request, judge);
+}
+
+PlanAnswer SeededPlanner::TryAll(const PlanRequest& request, PlanJudge& judge) const {
   Search search(*this, request, judge);
-  std::vector<Timing> timings = {Timing::kWholeTime, Timing::kLeaveLate, Timing::kArriveEarly};
-  Candidate best;
-  if (request.initial) {
-    best = search.Solve(MakeWarmStart(request), Stages::kWithLimits);
-  } else {
-    best = search.Solve(MakeDirectMotion(request, timings.front()), Stages::kBoth);
-    timings.erase(timings.begin());
+  Seeds seeds(request, gp_.num_detours);
+  std::optional<Candidate> taken_up = search.TakeUp();
+  const int first = taken_up ? request.progress.next_seed % seeds.count() : 0;
+  Candidate best =
+      taken_up ? *std::move(taken_up)
+               : search.Solve(seeds.Make(0), request.initial ? Stages::kWithLimits : Stages::kBoth);
+  if (!best.verdict.is_free() && LeadsToGoal(request)) {
+    if (std::optional<PlanRequest> nearby = WithFreeGoal(request)) {
+      nearby->budget = request.budget.WhatIsLeft(search.spent());
+      PlanAnswer answer = Near(TryAll(*nearby, judge));
+      answer.iterations += search.iterations();
+      answer.spent += search.spent();
+      return answer;
+    }
   }
-  const auto attempt = [&](const Trajectory& guess) {
-    Candidate other = search.Solve(guess, Stages::kBoth, &best.verdict.clearance);
+  SearchProgress progress;
+  for (int i = taken_up ? 0 : 1; i < seeds.count(); ++i) {
+    const int seed = (first + i) % seeds.count();
+    const bool is_good = best.verdict.is_free() &&
+                         (request.initial || seeds.IsDetour(seed) || best.verdict.keeps_limits);
+    if (is_good) continue;
+    if (search.IsSpent()) {
+      progress = {true, seed, TimedPlan{*best.answer.trajectory, request.start}};
+      break;
+    }
+    Candidate other = search.Solve(seeds.Make(seed), Stages::kBoth, &best.verdict.clearance);
     if (IsBetter(other.verdict, best.verdict)) best = std::move(other);
-  };
-  for (const Timing timing : timings) {
-    const bool is_good =
-        best.verdict.is_free() && (request.initial || IsWithinLimits(best.verdict));
-    if (is_good || search.IsSpent()) break;
-    attempt(MakeDirectMotion(request, timing));
   }
-  // A warm start has less time for one. Other ones a cycle later: who waits without a way out tries
-  // more and more of them.
-  const int num_detours = request.initial ? 0 : gp_.num_detours;
-  RandomStream random(std::bit_cast<std::uint64_t>(FirstFreeTime(request).seconds()), "detours");
-  for (int i = 0; i < num_detours && !best.verdict.is_free() && !search.IsSpent(); ++i) {
-    attempt(MakeDetour(request, random));
-  }
-  best.answer.iterations = search.iterations();
-  return std::move(best.answer);
+  progress.cut_short = progress.cut_short || search.was_cut_short();
+  PlanAnswer answer = std::move(best.answer);
+  answer.iterations = search.iterations();
+  answer.spent = search.spent();
+  answer.progress = std::move(progress);
+  return answer;
 }
 
 }  // namespace sidestep::planner

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "sidestep/planner/gp_settings.h"
 #include "sidestep/planner/planner.h"
@@ -18,8 +19,15 @@ namespace sidestep::planner {
 /// solved with limits at once. A plan is judged by its clearance, not by its cost. If a cold one is
 /// not free within the limits, or a warm one not free, direct motions with other timings are tried
 /// as seeds until one is, and the best counts. Where all of them touch something, a cold start is
-/// followed by detours over random configurations, other ones for another time. Such seeds get few
-/// iterations, and no second stage if the first leaves them less safe than the best so far.
+/// followed by detours (planner/seeds.h). Such seeds get few iterations, and no second stage if the
+/// first leaves them less safe than the best so far. What is free and exceeds a limit is solved
+/// again with stiffer limits.
+///
+/// Where the goal is blocked when the horizon ends, no plan to it can be free: then the plan is one
+/// to the nearest place that is (planner/free_goal.h), found in the same way.
+///
+/// A search that its budget cuts short goes on in the next request: it takes up the best plan so
+/// far, and then the guesses from where it stopped, in a ring.
 class SeededPlanner : public Planner {
  public:
   PlannerCapabilities capabilities() const override {
@@ -48,8 +56,11 @@ class SeededPlanner : public Planner {
     Verdict verdict;
   };
   class Search;
-  bool IsWithinLimits(const Verdict& verdict) const;  // the robot's own, unscaled
-  /// Free within limits comes before free, free before not free; then what is safer.
+  PlanAnswer TryAll(const PlanRequest& request, PlanJudge& judge) const;
+  /// If the goal is blocked, the same request with the nearest one that is free.
+  std::optional<PlanRequest> WithFreeGoal(const PlanRequest& request) const;
+  /// Free within the limits that are asked for comes before free within the robot's own, that
+  /// before free, and free before not free; then what is safer.
   bool IsBetter(const Verdict& a, const Verdict& b) const;
 
   GpSettings gp_;

@@ -19,7 +19,8 @@ class TrajectoryOptimizer {
   /// Goes to `guess`, which holds the request's fixed states and stands on its grid, and leaves
   /// limits out of the objective until they are added.
   virtual void Restart(const Trajectory& guess) = 0;
-  virtual void AddLimits() = 0;
+  /// Adds what limits cost, with weights so many times the usual; once more, for stiffer ones.
+  virtual void AddLimits(double stiffness) = 0;
   /// Improves the present states until an iteration changes the cost by no more than
   /// `function_tolerance` of it, or `max_iterations` are over.
   virtual SolveOutcome Solve(int max_iterations, double function_tolerance) = 0;

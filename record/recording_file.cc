@@ -263,6 +263,7 @@ void WriteCycles(Hdf5ImageWriter& file, const Recording& recording) {
   file.Write("cycles/accepted", IntegerColumn(cycles, [](const auto& c) { return c.accepted; }));
   file.Write("cycles/iterations",
              IntegerColumn(cycles, [](const auto& c) { return c.iterations; }));
+  file.Write("cycles/cut_short", IntegerColumn(cycles, [](const auto& c) { return c.cut_short; }));
   file.Write("cycles/cost", Column(cycles, [](const auto& c) { return c.cost; }));
   file.Write("cycles/predicted_clearance",
              Column(cycles, [](const auto& c) { return c.predicted_clearance_m; }), "m");
@@ -564,6 +565,7 @@ void ReadCycles(const Hdf5ImageReader& file, Recording* recording) {
   const Strings reason = file.ReadStrings("cycles/reason", {num_rows});
   const Integers accepted = file.ReadIntegers("cycles/accepted", {num_rows});
   const Integers iterations = file.ReadIntegers("cycles/iterations", {num_rows});
+  const Integers cut_short = file.ReadIntegers("cycles/cut_short", {num_rows});
   const Doubles cost = file.ReadDoubles("cycles/cost", {num_rows});
   const Doubles clearance = file.ReadDoubles("cycles/predicted_clearance", {num_rows});
   const Integers outside = file.ReadIntegers("cycles/samples_outside_grid", {num_rows});
@@ -577,6 +579,7 @@ void ReadCycles(const Hdf5ImageReader& file, Recording* recording) {
     cycle.reason = reason.values[i];
     cycle.accepted = accepted.values[i] != 0;
     cycle.iterations = static_cast<int>(iterations.values[i]);
+    cycle.cut_short = cut_short.values[i] != 0;
     cycle.cost = cost.values[i];
     cycle.predicted_clearance_m = clearance.values[i];
     cycle.samples_outside_grid = static_cast<int>(outside.values[i]);

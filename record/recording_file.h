@@ -13,7 +13,7 @@ namespace sidestep::record {
 std::string Hdf5Version();
 
 /// Of the format of a trace.
-inline constexpr int kTraceVersion = 3;
+inline constexpr int kTraceVersion = 4;
 
 /// Writes `recording` as HDF5 (layout: docs/trace.md). Equal recordings give equal bytes.
 /// @throws InputError if the file cannot be written.

@@ -391,6 +391,12 @@ void ReadReplanning(const YamlReader& top, Scenario& scenario) {
     const std::vector<std::string> words(std::begin(kLatencyWords), std::end(kLatencyWords));
     scenario.latency = LatencyFromString(map.GetChoice("latency", words));
   }
+  if (map.Has("iterations")) {
+    scenario.most_iterations = map.GetInt("iterations");
+    if (scenario.most_iterations < 0) {
+      map.Fail("iterations", "must be >= 0, is " + std::to_string(scenario.most_iterations));
+    }
+  }
   map.CheckNoUnknownKeys();
 }
 

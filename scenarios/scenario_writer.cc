@@ -144,6 +144,7 @@ std::string PlannerText(const Scenario& scenario) {
   }
   return text + "replanning: {rate_hz: " + Number(scenario.replan_rate_hz) +
          ", latency: " + ToString(scenario.latency) + ", latency_s: " + Number(scenario.latency_s) +
+         ", iterations: " + std::to_string(scenario.most_iterations) +
          "}\nsafety: {profile: " + ToString(scenario.safety.profile) +
          ", obstacle_speed_m_s: " + Number(scenario.safety.obstacle_speed_m_s) +
          ", obstacle_acceleration_m_s2: " + Number(scenario.safety.obstacle_acceleration_m_s2) +

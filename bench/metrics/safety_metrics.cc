@@ -28,6 +28,17 @@ double PlansAccepted(const record::Recording& recording) {
                                            [](const CycleRecord& c) { return c.accepted; }));
 }
 
+double ReplansCutShort(const record::Recording& recording) {
+  return static_cast<double>(std::count_if(recording.cycles.begin(), recording.cycles.end(),
+                                           [](const CycleRecord& c) { return c.cut_short; }));
+}
+
+double ReplansShortOfGoal(const record::Recording& recording) {
+  return static_cast<double>(
+      std::count_if(recording.cycles.begin(), recording.cycles.end(),
+                    [](const CycleRecord& c) { return c.status == "short_of_goal"; }));
+}
+
 double SamplesOutsideGrid(const record::Recording& recording) {
   return std::accumulate(
       recording.cycles.begin(), recording.cycles.end(), 0.0,

@@ -13,6 +13,8 @@ double Replans(const record::Recording& recording);
 double PlansAccepted(const record::Recording& recording);
 /// How many positions of spheres along the plans of all cycles lay outside the mapped box, where
 /// only what is known exactly and what moves was seen.
+double ReplansCutShort(const record::Recording& recording);
+double ReplansShortOfGoal(const record::Recording& recording);
 double SamplesOutsideGrid(const record::Recording& recording);
 
 }  // namespace sidestep::bench

@@ -1,9 +1,11 @@
-// How long does one plan take in the walkway scene: from nothing, and from the plan that runs?
+// How long does one plan of each planner take in the walkway scene: from nothing, and from the plan
+// that runs?
 
 #include <benchmark/benchmark.h>
 
 #include <cmath>
 #include <memory>
+#include <string>
 #include <variant>
 
 #include "sidestep/core/shape.h"
@@ -78,22 +80,16 @@ void PlanAgain(const planner::Planner& planner, const planner::PlanRequest& requ
   state.counters["iterations"] = iterations;
 }
 
-void BM_ColdPlan(benchmark::State& state) {
+void BM_ColdPlan(benchmark::State& state, const std::string& name) {
   const Scene scene(0.1 * static_cast<double>(state.range(0)));
-  const auto planner = planner::MakePlanner("gpmp", scene.robot, {});
+  const auto planner = planner::MakePlanner(name, scene.robot, {});
   PlanAgain(*planner, scene.Request(), state);
 }
-BENCHMARK(BM_ColdPlan)
-    ->ArgName("speed_dm_s")
-    ->Arg(10)
-    ->Arg(14)
-    ->Arg(20)
-    ->Unit(benchmark::kMillisecond);
 
 // The obstacle turns out to be `error_cm` further along than the running plan thought.
-void BM_WarmPlan(benchmark::State& state) {
+void BM_WarmPlan(benchmark::State& state, const std::string& name) {
   const Scene scene(1.4);
-  const auto planner = planner::MakePlanner("gpmp", scene.robot, {});
+  const auto planner = planner::MakePlanner(name, scene.robot, {});
   planner::PlanRequest request = scene.Request();
   request.initial = planner->Plan(request).trajectory;
   request.num_fixed = 3;
@@ -101,7 +97,25 @@ void BM_WarmPlan(benchmark::State& state) {
   request.field = moved.field.get();
   PlanAgain(*planner, request, state);
 }
-BENCHMARK(BM_WarmPlan)->ArgName("error_cm")->Arg(0)->Arg(2)->Arg(10)->Unit(benchmark::kMillisecond);
+
+// Of every planner there is; that of straight_line is what checking and judging cost.
+const bool kAreRegistered = [] {
+  for (const std::string& name : planner::PlannerNames()) {
+    benchmark::RegisterBenchmark(("BM_ColdPlan/" + name).c_str(), BM_ColdPlan, name)
+        ->ArgName("speed_dm_s")
+        ->Arg(10)
+        ->Arg(14)
+        ->Arg(20)
+        ->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark(("BM_WarmPlan/" + name).c_str(), BM_WarmPlan, name)
+        ->ArgName("error_cm")
+        ->Arg(0)
+        ->Arg(2)
+        ->Arg(10)
+        ->Unit(benchmark::kMillisecond);
+  }
+  return true;
+}();
 
 }  // namespace
 }  // namespace sidestep::bench

@@ -24,8 +24,9 @@ class FastOptimizer final : public TrajectoryOptimizer {
     states_.resize(2 * robot_.num_joints(), guess.num_states());
     states_ << guess.q, guess.v;
   }
-  void AddLimits() override {
-    objective_->AddLimits(SoftLimitsOf(robot_, request_.q_start, request_.q_goal, settings_));
+  void AddLimits(double stiffness) override {
+    objective_->AddLimits(
+        SoftLimitsOf(robot_, request_.q_start, request_.q_goal, settings_, stiffness));
   }
   SolveOutcome Solve(int max_iterations, double function_tolerance) override {
     return solver_->Solve(max_iterations, function_tolerance, states_, request_.budget);

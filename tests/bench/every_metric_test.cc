@@ -61,6 +61,8 @@ record::Recording SmoothReach(double end_s = 1.5) {
                 Eigen::RowVector3d::Zero()};
   recording.cycles[2].plan = recording.cycles[1].plan;
   recording.cycles[2].plan.q *= 9;
+  recording.cycles[0].cut_short = recording.cycles[2].cut_short = true;
+  recording.cycles[1].status = "short_of_goal";
   recording.cycles[0].samples_outside_grid = 7;
   recording.cycles[2].samples_outside_grid = 5;
 
@@ -126,6 +128,8 @@ constexpr Expected kKnown[] = {
     {"commanded_torque_rate_use", 0.25, 1e-9},
     {"replans", 3, 0},
     {"plans_accepted", 1, 0},
+    {"replans_cut_short", 2, 0},
+    {"replans_short_of_goal", 1, 0},
     {"samples_outside_grid", 12, 0},
     // The height alone, until the ball stops: then also how far it was expected to go on.
     {"prediction_error_100ms_m", 0.01, 1e-12},

@@ -98,7 +98,7 @@ TEST(LevenbergMarquardt, TakesTheIterationsOfCeresToTheSameCost) {
       TrajectoryObjective objective(panda, request, guess.t_s, options);
       objective.Restart(guess);
       if (seed % 2 == 0) {
-        const SoftLimits limits = SoftLimitsOf(panda, request.q_start, request.q_goal, settings);
+        const SoftLimits limits = SoftLimitsOf(panda, request.q_start, request.q_goal, settings, 1);
         problem.AddLimits(limits);
         objective.AddLimits(limits);
       }

@@ -225,6 +225,92 @@ TEST(Replanner, SharesItsBudgetAmongThePlansOfACycle) {
   EXPECT_EQ(second.record.iterations, 40);
 }
 
+// Spends all it may and says that it had more to try.
+class InsatiablePlanner final : public Planner {
+ public:
+  InsatiablePlanner() : Planner(MakePlanarArm(), Loop::Settings()) {}
+  struct Asked {
+    int iterations;
+    bool is_warm;
+    int next_seed;
+  };
+  mutable std::vector<Asked> asked;
+
+ private:
+  PlanAnswer DoPlan(const PlanRequest& request, PlanJudge&) const override {
+    asked.push_back(
+        {request.budget.iterations, request.initial.has_value(), request.progress.next_seed});
+    PlanAnswer answer;
+    answer.trajectory = MakeDirectMotion(request, sidestep::planner::Timing::kWholeTime);
+    answer.iterations = request.budget.iterations;
+    answer.progress = {request.initial.has_value(), static_cast<int>(asked.size()), std::nullopt};
+    return answer;
+  }
+};
+
+TEST(Replanner, KeepsHalfOfTheNextBudgetForANewHorizonThatItCameTooLateFor) {
+  MovingBallWorld world = NothingThere();
+  const InsatiablePlanner planner;
+  Replanner replanner(planner, {.horizon_s = 3, .step_s = 0.1, .q_goal = kGoal});
+  const auto cycle = [&](double now_s) {
+    CycleTask task =
+        replanner.Prepare(EpisodeTime(now_s), {EpisodeTime(now_s), kStart, Eigen::Vector2d::Zero()},
+                          HorizonOffset(0.1), GoalWatch(kGoal, 0), world.MakeField());
+    task.budget.iterations = 41;
+    CycleResult result = replanner.Work(task);
+    if (now_s > 0) result.plan.reset();  // so that the next cycle is like this one
+    replanner.Accept(result);
+    return result.record;
+  };
+  cycle(0);
+  world.Replace({0.95, 0, 0}, {0, 0, 0}, 0.1);  // in the middle of its way
+  ASSERT_EQ(planner.asked.size(), 1u);
+  EXPECT_TRUE(cycle(0.1).cut_short);
+  ASSERT_EQ(planner.asked.size(), 2u);  // all was spent on going on
+  EXPECT_EQ(planner.asked[1].iterations, 41);
+  EXPECT_TRUE(planner.asked[1].is_warm);
+  EXPECT_TRUE(cycle(0.1).cut_short);
+  ASSERT_EQ(planner.asked.size(), 4u);
+  EXPECT_EQ(planner.asked[2].iterations, 21);
+  EXPECT_EQ(planner.asked[2].next_seed, 2);  // goes on where it stopped
+  EXPECT_FALSE(planner.asked[3].is_warm);
+  EXPECT_EQ(planner.asked[3].iterations, 20);
+  EXPECT_EQ(planner.asked[3].next_seed, 0);  // nothing had been tried
+}
+
+// In a hurry from the plan that runs, at leisure with a new horizon.
+class HastyPlanner final : public Planner {
+ public:
+  explicit HastyPlanner(bool always = false) : Planner(MakePlanarArm(), Slow()), always_(always) {}
+  static PlannerSettings Slow() {
+    PlannerSettings settings = Loop::Settings();
+    settings.velocity_scale = 0.65;  // the arm can do 2 rad/s, and has 2.3 rad to go in 3 s
+    return settings;
+  }
+
+ private:
+  PlanAnswer DoPlan(const PlanRequest& request, PlanJudge&) const override {
+    const bool is_hasty = request.initial || (always_ && request.start.seconds() > 0);
+    return {
+        .trajectory = MakeDirectMotion(request, is_hasty ? sidestep::planner::Timing::kArriveEarly
+                                                         : sidestep::planner::Timing::kWholeTime),
+        .converged = true};
+  }
+  bool always_;
+};
+
+TEST(Replanner, TakesANewHorizonWhereThePlanExceedsALimitAndThatOneDoesNot) {
+  for (const bool always : {false, true}) {
+    MovingBallWorld world = NothingThere();
+    Loop loop(world, std::make_unique<HastyPlanner>(always));
+    EXPECT_EQ(loop.Cycle(0, 0.1).record.status, "solved");
+    const CycleResult next = loop.Cycle(0.3, 0.1);
+    EXPECT_EQ(next.record.status, always ? "over_limits" : "solved");
+    EXPECT_EQ(next.record.plan_start, EpisodeTime(always ? 0 : 0.4));
+    EXPECT_TRUE(next.record.accepted);
+  }
+}
+
 TEST(Replanner, BrakesBeforeWhatComesIfThePlannerFindsNone) {
   MovingBallWorld world = NothingThere();
   auto mine = std::make_unique<PlannerThatMayFail>();
@@ -288,29 +374,33 @@ TEST(Replanner, StepsAsideFromTheGoalWhenSomethingComes) {
   EXPECT_LT((loop.StateAt(EpisodeTime(9)).q - kGoal).cwiseAbs().maxCoeff(), 1e-3);
 }
 
-TEST(Replanner, WaitsWhileTheGoalIsTakenAndGoesWhenItIsFree) {
+TEST(Replanner, GoesNearAGoalThatIsTakenAndThereWhenItIsFree) {
   const Eigen::Vector3d p_WTip = MakePlanarArm().ComputeSphereCenters(kGoal, false).p_WS.col(5);
   MovingBallWorld world(p_WTip, {0, 0, 0}, 0.1);
   Loop loop(world);
   for (const double now_s : {0.0, 0.1, 0.2}) {
     const CycleResult cycle = loop.Cycle(now_s, 0.1);
-    EXPECT_FALSE(cycle.plan);
-    EXPECT_EQ(cycle.record.status, "in_collision");
+    EXPECT_EQ(cycle.record.status, "short_of_goal");
+    EXPECT_GT(cycle.record.predicted_clearance_m, 0);
+    EXPECT_EQ(cycle.record.reason, "the goal is blocked when the horizon ends");
   }
   world.Replace({100, 0, 0}, {0, 0, 0}, 0.1);
   ASSERT_TRUE(loop.Cycle(0.3, 0.1).plan);
   EXPECT_LT((loop.StateAt(EpisodeTime(3.3)).q - kGoal).cwiseAbs().maxCoeff(), 1e-3);
 }
 
-TEST(Replanner, BrakesAndWaitsWhenTheGoalIsTakenOnItsWay) {
+TEST(Replanner, WaitsNearbyWhenTheGoalIsTakenOnItsWay) {
   MovingBallWorld world = NothingThere();
   Loop loop(world);
   loop.RunUntil(1.5, 0.1, 0.1);
   const Eigen::Vector3d p_WTip = MakePlanarArm().ComputeSphereCenters(kGoal, false).p_WS.col(5);
   world.Replace(p_WTip, {0, 0, 0}, 0.1);
   for (int i = 15; i < 40; ++i) {
-    EXPECT_EQ(loop.Cycle(0.1 * i, 0.1).record.status, i == 15 ? "braked" : "in_collision") << i;
+    const CycleRecord record = loop.Cycle(0.1 * i, 0.1).record;
+    EXPECT_EQ(record.status, i < 27 ? "short_of_goal" : "kept") << i;
+    EXPECT_GT(record.predicted_clearance_m, 0) << i;
   }
+  EXPECT_GT((loop.StateAt(EpisodeTime(4)).q - kGoal).cwiseAbs().maxCoeff(), kGoalTolerance_rad);
   EXPECT_EQ(loop.StateAt(EpisodeTime(4)).v, Eigen::Vector2d(0, 0));
   EXPECT_GT(loop.min_clearance_m(), 0.01);
   world.Replace({100, 0, 0}, {0, 0, 0}, 0.1);

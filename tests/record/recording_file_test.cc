@@ -123,6 +123,7 @@ void ExpectEqual(const CycleRecord& a, const CycleRecord& b) {
   EXPECT_EQ(a.status, b.status);
   EXPECT_EQ(a.accepted, b.accepted);
   EXPECT_EQ(a.iterations, b.iterations);
+  EXPECT_EQ(a.cut_short, b.cut_short);
   EXPECT_EQ(a.cost, b.cost);
   EXPECT_EQ(a.predicted_clearance_m, b.predicted_clearance_m);
   EXPECT_EQ(a.plan_start, b.plan_start);

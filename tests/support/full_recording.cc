@@ -64,6 +64,7 @@ record::Recording FullRecording(int num_control) {
     cycle.status = i == 1 ? "not_converged" : "solved";
     cycle.accepted = i != 1;
     cycle.iterations = 7 + i;
+    cycle.cut_short = i == 1;
     cycle.cost = 12.5 * i;
     cycle.predicted_clearance_m = 0.04 - i;
     cycle.samples_outside_grid = 5 * i;

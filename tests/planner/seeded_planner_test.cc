@@ -1,0 +1,214 @@
+// The policy that all optimising planners share, with an optimiser that does nothing but tell what
+// it was asked.
+
+#include "sidestep/planner/seeded_planner.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <set>
+#include <vector>
+
+#include "sidestep/planner/first_guess.h"
+#include "sidestep/planner/registry.h"
+#include "sidestep/planner/seeds.h"
+#include "tests/support/ball_field.h"
+#include "tests/support/planar_arm.h"
+
+namespace sidestep::planner {
+namespace {
+
+constexpr int kIterations = 3;  // of each solve
+
+struct Log {
+  std::vector<Trajectory> guesses;
+  int num_solves = 0;
+};
+
+// Leaves every guess as it is.
+class IdleOptimizer final : public TrajectoryOptimizer {
+ public:
+  explicit IdleOptimizer(Log& log) : log_(log) {}
+  void Restart(const Trajectory& guess) override {
+    log_.guesses.push_back(guess);
+    guess_ = guess;
+  }
+  void AddLimits(double) override {}
+  SolveOutcome Solve(int max_iterations, double) override {
+    ++log_.num_solves;
+    return {std::min(max_iterations, kIterations), max_iterations >= kIterations};
+  }
+  Trajectory GetTrajectory() const override { return guess_; }
+  PlanCost ComputeCost() override { return {}; }
+
+ private:
+  Log& log_;
+  Trajectory guess_;
+};
+
+class IdlePlanner final : public SeededPlanner {
+ public:
+  IdlePlanner() : SeededPlanner(MakePlanarArm(), {}, {.num_detours = 3}) {}
+  mutable Log log;
+
+ private:
+  std::unique_ptr<TrajectoryOptimizer> MakeOptimizer(const PlanRequest&) const override {
+    return std::make_unique<IdleOptimizer>(log);
+  }
+};
+
+PlanRequest Request(const sdf::DistanceField& field) {
+  PlanRequest request;
+  request.field = &field;
+  request.step_s = 0.1;
+  request.num_states = 21;
+  request.q_start = Eigen::Vector2d(-1.1, 0.3);
+  request.v_start = Eigen::Vector2d::Zero();
+  request.q_goal = Eigen::Vector2d(1.2, -0.2);
+  return request;
+}
+
+// The arm lies in it from beginning to end.
+const BallField& Everywhere() {
+  static const BallField field({0, 0, 0}, {0, 0, 0}, 3);
+  return field;
+}
+
+bool AreAlike(const Trajectory& a, const Trajectory& b) {
+  return (a.q - b.q).cwiseAbs().maxCoeff() < 1e-9 && (a.v - b.v).cwiseAbs().maxCoeff() < 1e-9;
+}
+
+// Of the request's seeds the one that `guess` is.
+int WhichSeed(const PlanRequest& request, const Trajectory& guess) {
+  Seeds seeds(request, 3);
+  for (int seed = 0; seed < seeds.count(); ++seed) {
+    if (!seeds.IsDetour(seed) && AreAlike(seeds.Make(seed), guess)) return seed;
+  }
+  return seeds.count();  // a detour
+}
+
+TEST(SeededPlanner, TriesEachGuessOnceInOrderWhereNothingIsFree) {
+  const IdlePlanner planner;
+  const PlanRequest request = Request(Everywhere());
+  const PlanResult result = planner.Plan(request);
+  ASSERT_EQ(planner.log.guesses.size(), 6u);
+  Seeds seeds(request, 3);
+  for (int seed = 0; seed < 6; ++seed) {
+    EXPECT_TRUE(AreAlike(planner.log.guesses[static_cast<std::size_t>(seed)], seeds.Make(seed)))
+        << seed;
+  }
+  EXPECT_FALSE(result.progress.cut_short);
+  EXPECT_EQ(result.iterations, kIterations * planner.log.num_solves);
+  EXPECT_EQ(result.spent, (kIterations + 1) * planner.log.num_solves);
+}
+
+TEST(SeededPlanner, ChangesNothingForABudgetThatIsNotSpent) {
+  const IdlePlanner planner;
+  PlanRequest request = Request(Everywhere());
+  const PlanResult without = planner.Plan(request);
+  const Log log = planner.log;
+  planner.log = {};
+  request.budget.iterations = without.spent;
+  const PlanResult with = planner.Plan(request);
+  EXPECT_FALSE(with.progress.cut_short);
+  EXPECT_EQ(with.spent, without.spent);
+  EXPECT_EQ(with.trajectory->q, without.trajectory->q);
+  ASSERT_EQ(planner.log.guesses.size(), log.guesses.size());
+}
+
+class ASearchCutShort : public ::testing::TestWithParam<int> {};
+
+TEST_P(ASearchCutShort, GoesOnWhereItStoppedUntilAllHasBeenTried) {
+  for (const bool is_warm : {false, true}) {
+    SCOPED_TRACE(is_warm ? "warm" : "cold");
+    const IdlePlanner planner;
+    PlanRequest request = Request(Everywhere());
+    if (is_warm) {
+      request.initial = MakeDirectMotion(request, Timing::kWholeTime);
+      request.initial->q.middleCols(1, 19).array() += 0.05;  // none of the direct ones
+    }
+    request.budget.iterations = GetParam();
+    const int num_seeds = Seeds(request, 3).count();
+    std::set<int> tried;
+    int num_detours = 0, num_requests = 0;
+    do {
+      planner.log = {};
+      const PlanResult result = planner.Plan(request);
+      ASSERT_LT(++num_requests, 30);
+      // A solve that has begun is looked at: one more.
+      EXPECT_LE(result.spent, request.budget.iterations + 2);
+      ASSERT_FALSE(planner.log.guesses.empty());
+      const bool is_taken_up = request.progress.cut_short && request.progress.next_seed > 0;
+      if (is_taken_up) {
+        EXPECT_TRUE(AreAlike(planner.log.guesses.front(), request.progress.best->trajectory));
+      }
+      const std::size_t first = is_taken_up ? 1 : 0;
+      for (std::size_t i = first; i < planner.log.guesses.size(); ++i) {
+        const int seed = WhichSeed(request, planner.log.guesses[i]);
+        const bool is_detour = seed == num_seeds;
+        if (is_detour) {
+          ++num_detours;
+        } else {
+          if (i == first) {
+            EXPECT_EQ(seed, is_taken_up ? request.progress.next_seed : 0);
+          }
+          tried.insert(seed);
+        }
+      }
+      request.progress = result.progress;
+    } while (request.progress.next_seed != 0 && num_requests < 12);
+    EXPECT_EQ(tried.size(), is_warm ? 4u : 3u);
+    EXPECT_GE(num_detours, is_warm ? 0 : 3);
+    EXPECT_GT(num_requests, 1);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(OfBudgets, ASearchCutShort, ::testing::Values(5, 9, 12));
+
+TEST(ASearchThatWasCutShort, IsForgottenOnceThePlanThatRunsIsFree) {
+  const IdlePlanner planner;
+  const BallField nothing({100, 0, 0}, {0, 0, 0}, 0.1);
+  PlanRequest request = Request(nothing);
+  request.initial = MakeDirectMotion(request, Timing::kLeaveLate);
+  request.progress = {true, 2, TimedPlan{MakeDirectMotion(request, Timing::kArriveEarly), {}}};
+  const PlanResult result = planner.Plan(request);
+  ASSERT_EQ(planner.log.guesses.size(), 1u);
+  EXPECT_TRUE(AreAlike(planner.log.guesses.front(), *request.initial));
+  EXPECT_FALSE(result.progress.cut_short);
+}
+
+TEST(MakeContinuation, DoesWhatThePlanDoesAtTheSameTimes) {
+  PlanRequest request = Request(Everywhere());
+  const Trajectory plan = MakeDirectMotion(request, Timing::kWholeTime);
+  request.start = EpisodeTime(0.5);
+  request.num_fixed = 2;
+  const Trajectory motion = MakeContinuation(request, {plan, EpisodeTime(0)});
+  for (int k = 0; k < 2; ++k) EXPECT_EQ(motion.q.col(k), request.q_start);
+  for (int k = 2; k < 21; ++k) {
+    const int then = std::min(k + 5, 20);  // rests at its end
+    EXPECT_LT((motion.q.col(k) - plan.q.col(then)).norm(), 1e-9) << k;
+  }
+}
+
+// The same of all planners that search: what they find does not depend on a budget that they do not
+// need.
+TEST(SeededPlanners, FindTheSameWithABudgetThatIsNotSpent) {
+  const BallField field({0.9, 0.4, 0}, {0, -0.3, 0}, 0.15);
+  for (const char* const name : {"gpmp", "gpmp_ceres", "gpmp_fast"}) {
+    SCOPED_TRACE(name);
+    const auto planner = MakePlanner(name, MakePlanarArm(), {});
+    PlanRequest request = Request(field);
+    const PlanResult without = planner->Plan(request);
+    request.budget.iterations = without.spent;
+    const PlanResult with = planner->Plan(request);
+    EXPECT_EQ(with.trajectory->q, without.trajectory->q);
+    EXPECT_EQ(with.status, without.status);
+    EXPECT_FALSE(with.progress.cut_short);
+    request.budget.iterations = without.iterations / 2;
+    EXPECT_TRUE(planner->Plan(request).progress.cut_short);
+  }
+}
+
+}  // namespace
+}  // namespace sidestep::planner
