@@ -12,6 +12,12 @@ struct TableAxes {
   std::string down, across;  ///< empty: none
 };
 
+/// Text as it is to be read, in a cell of a table too: names may hold anything.
+std::string TableCell(const std::string& text);
+
+/// The values of a factor, in the order in which they come; one word for a factor without a name.
+std::vector<std::string> FactorValues(const std::vector<StudyRow>& rows, const std::string& factor);
+
 /// A Markdown table: how many episodes reached the goal touching nothing, of how many, for each
 /// value of one factor (down) and another (across), in the order in which they come; below it how
 /// the others ended. Without `down` only the sums; without `across` one column.
@@ -24,7 +30,8 @@ struct StudySubject {
   std::string command;      ///< what makes the study, quoted for a shell
 };
 
-/// A page in Markdown: of what the study is, what is varied, and its table.
+/// A page in Markdown: of what the study is, what is varied, its table, and where something varies
+/// across, what that does to the same episodes (bench/paired_table.h).
 std::string StudyPage(const StudySubject& subject, const std::vector<StudyRow>& rows,
                       const TableAxes& axes);
 

@@ -18,6 +18,7 @@
 #include "sidestep/core/joined.h"
 #include "sidestep/planner/gp_planner.h"
 #include "sidestep/planner/registry.h"
+#include "sidestep/scenarios/scenario.h"
 
 namespace sidestep::cli {
 namespace {
@@ -97,6 +98,48 @@ int BenchPlanners(const PlannerBenchOptions& options) {
   return 0;
 }
 
+struct PairsOptions {
+  std::string problem, out;
+  int num_pairs = 100, seed = 1;
+};
+
+int WritePairs(const PairsOptions& options) {
+  CheckWords("PROBLEM", {options.problem}, bench::HitPairNames());
+  CheckCanWrite(options.out);
+  const DataPaths paths = FindDataPaths();
+  bench::HitPairs pairs =
+      bench::MakeHitPairs(options.problem, paths.models, paths.scenarios,
+                          static_cast<std::uint64_t>(options.seed), options.num_pairs);
+  pairs.scene.name = options.problem;
+  pairs.scene.description = "Pairs of start and goal whose direct motion is hit, seed " +
+                            std::to_string(options.seed) + " of " + options.problem;
+  WriteFile(options.out, scenarios::ToYaml(pairs.scene, "pair", pairs.tasks));
+  Print("written {}\n", options.out);
+  return 0;
+}
+
+void AddPairs(CommandLine& line, CLI::App& bench) {
+  auto options = std::make_shared<PairsOptions>();
+  CLI::App* const pairs = bench.add_subcommand(
+      "pairs", "Write the pairs of start and goal of a problem as a scenario with a choice, pair");
+  pairs->add_option("PROBLEM", options->problem, Joined(bench::HitPairNames()))->required();
+  pairs->add_option("--pairs", options->num_pairs, "How many")
+      ->check(NumberFrom(1, 1000))
+      ->capture_default_str();
+  pairs->add_option("--seed", options->seed, "What they are drawn from")
+      ->check(NumberFrom(0, 2147483647))
+      ->capture_default_str();
+  pairs->add_option("--out", options->out, "The file to write [PROBLEM.yaml]");
+  pairs->footer(
+      "They are those of `sidestep bench planner`: the direct motion is hit by what moves, and by\n"
+      "nothing else. `sidestep study FILE` runs them all in closed loop, `sidestep run FILE --set\n"
+      "pair=7` one of them.");
+  pairs->callback([&line, options] {
+    if (options->out.empty()) options->out = options->problem + ".yaml";
+    line.exit_code = WritePairs(*options);
+  });
+}
+
 void AddPlannerBench(CommandLine& line, CLI::App& bench) {
   auto options = std::make_shared<PlannerBenchOptions>();
   CLI::App* const planner =
@@ -159,7 +202,7 @@ void AddCycleBench(CommandLine& line, CLI::App& bench) {
 
 void AddBenchCommand(CommandLine& line) {
   CLI::App* const bench =
-      line.app.add_subcommand("bench", "Time planners beside each other on this machine");
+      line.app.add_subcommand("bench", "Time planners beside each other, or write their tasks");
   // Not required of CLI11, whose complaint would not name the word that was wrong.
   bench->require_subcommand(0, 1);
   bench->callback([bench] {
@@ -168,6 +211,7 @@ void AddBenchCommand(CommandLine& line) {
     throw InputError("bench", "needs one of " + Joined(bench->get_subcommands({}), ", ", name));
   });
   AddPlannerBench(line, *bench);
+  AddPairs(line, *bench);
   AddCycleBench(line, *bench);
 }
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "sidestep/cli/option_lists.h"
 #include "sidestep/cli/shell_quote.h"
+#include "sidestep/cli/varied_keys.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/scenarios/scenario.h"
 #include "sidestep/scenarios/yaml_text.h"
@@ -35,6 +37,28 @@ std::vector<bench::Factors> Cross(const std::vector<bench::Factors>& cases,
   return crossed;
 }
 
+// The keys that --vary gives, each given once and by nothing else.
+std::set<std::string> CheckVaried(const std::vector<VariedKeys>& varied,
+                                  const std::vector<std::string>& settings) {
+  std::set<std::string> keys;
+  std::vector<std::string> all = settings;
+  for (const VariedKeys& one : varied) {
+    for (const auto& [key, value] : SettingsOf(one.factor, one.values.front())) {
+      for (const auto& [factor, flag] : {std::pair(kSpeed, "--speed"),
+                                         {kSeed, "--episodes"},
+                                         {"knowledge", "--knowledge"},
+                                         {"predictor", "--predictor"}}) {
+        if (key == factor)
+          throw InputError("--vary " + key, std::string("is what ") + flag + " varies");
+      }
+      keys.insert(key);
+      all.push_back(key + "=" + value);
+    }
+  }
+  ParseSettings(all);  // as if each value were set
+  return keys;
+}
+
 // The values of a factor that a flag lists and that a setting may fix instead.
 std::vector<std::string> ValuesOf(const std::string& factor, const char* flag,
                                   const std::vector<std::string>& listed,
@@ -49,6 +73,9 @@ std::vector<std::string> ValuesOf(const std::string& factor, const char* flag,
 }  // namespace
 
 std::vector<bench::Factors> StudyCases(const StudySpace& space, const DataPaths& paths) {
+  std::vector<VariedKeys> varied;
+  for (const std::string& text : space.varied) varied.push_back(ParseVariedKeys(text));
+  const std::set<std::string> varied_keys = CheckVaried(varied, space.settings);
   scenarios::Settings settings = ParseSettings(space.settings);
   if (settings.count(kSpeed) != 0) {
     throw InputError(std::string("--set ") + kSpeed, "is what --speed varies");
@@ -72,9 +99,11 @@ std::vector<bench::Factors> StudyCases(const StudySpace& space, const DataPaths&
   std::vector<bench::Factors> cases = {{}};
   for (const auto& [choice, values] :
        scenarios::ScenarioChoices(FindScenario(space.scenario, paths))) {
-    if (settings.count(choice) == 0) cases = Cross(cases, choice, values);
+    const bool is_given = settings.count(choice) != 0 || varied_keys.count(choice) != 0;
+    if (!is_given) cases = Cross(cases, choice, values);
   }
   for (const auto& [key, value] : settings) cases = Cross(cases, key, {value});
+  for (const VariedKeys& keys : varied) cases = Cross(cases, keys.factor, keys.values);
   cases = Cross(cases, kSpeed, speeds);
   cases = Cross(cases, "knowledge", knowledge);
   cases = Cross(cases, "predictor", predictors);
@@ -97,7 +126,7 @@ Problem LoadCase(const std::string& scenario, const bench::Factors& factors,
     } else if (factor == "predictor") {
       overrides.predictor = value;
     } else {
-      overrides.settings[factor] = value;
+      for (const auto& [key, one] : SettingsOf(factor, value)) overrides.settings[key] = one;
     }
   }
   return LoadProblem(scenario, overrides, paths);
@@ -112,7 +141,9 @@ std::string RunCommandOf(const std::string& scenario, const bench::Factors& fact
     } else if (factor == "knowledge" || factor == "predictor" || factor == kSeed) {
       command += " --" + factor + " " + ShellQuoted(value);
     } else {
-      command += " --set " + ShellQuoted(factor + "=" + value);
+      for (const auto& [key, one] : SettingsOf(factor, value)) {
+        command += " --set " + ShellQuoted(key + "=" + one);
+      }
     }
   }
   return command;

@@ -17,13 +17,14 @@ inline constexpr const char* kSearch = "search";
 struct StudySpace {
   std::string scenario;
   std::vector<std::string> settings;  ///< KEY=VALUE; each is a factor of one value
+  std::vector<std::string> varied;    ///< cli/varied_keys.h; each is a factor of several
   std::vector<std::string> knowledge, predictors;
   std::vector<double> speeds;
   int episodes = 0;  ///< seeds 1, 2, ... ; 0: the scenario's own
   int search = 0;    ///< guesses; 0: no search
 };
 
-/// Every combination: the file's choices that no setting fixes, and what the flags list.
+/// Every combination: the file's choices that no setting fixes or varies, and what the flags list.
 /// @throws InputError for a value that is given twice or unknown.
 std::vector<bench::Factors> StudyCases(const StudySpace& space, const DataPaths& paths);
 

@@ -232,6 +232,12 @@ void AddStudyCommand(CommandLine& line) {
       ->required();
   study->add_option("--set", space.settings, "KEY=VALUE, as in `sidestep run`; fixes a choice")
       ->allow_extra_args(false);
+  study
+      ->add_option("--vary", space.varied,
+                   "KEY=VALUE,VALUE,...: any key of --set, with several values; some options of a "
+                   "choice. Keys that vary together: KEY/OTHER=VALUE/VALUE,VALUE/VALUE,...; may be "
+                   "repeated")
+      ->allow_extra_args(false);
   study->add_option("--knowledge", space.knowledge, "Kinds of knowledge, with commas")
       ->delimiter(',');
   study->add_option("--predictor", space.predictors, "Predictors, with commas")->delimiter(',');
@@ -250,7 +256,7 @@ void AddStudyCommand(CommandLine& line) {
                    "kind of knowledge, `search`")
       ->check(NumberFrom(1, 100000));
   study->add_option("--down", options->axes.down,
-                    "What the table lists down: a choice, speed_m_s, a key of --set, ... [what "
+                    "What the table lists down: a choice, speed_m_s, what --vary names, ... [what "
                     "varies]");
   study->add_option("--across", options->axes.across,
                     "What it lists across: knowledge, predictor, ... [what varies]");

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <optional>
 
 #include "sidestep/core/random.h"
@@ -73,6 +74,38 @@ Eigen::Vector3d PositionAfter(const RandomWalkMotion& motion, double elapsed_s) 
   return WalkFor(motion, elapsed_s).p_WO;
 }
 
+// The level direction to the left of a level one.
+Eigen::Vector3d LeftOf(const Eigen::Vector3d& direction) {
+  return {-direction.y(), direction.x(), 0};
+}
+
+// The time on the walk's own clock.
+double WalkTime(const WalkMotion& motion, double elapsed_s) {
+  return motion.speed_m_s / motion.pace_m_s.middle() * elapsed_s;
+}
+
+double WayWalked(const WalkMotion& motion, double walked_s) {
+  RandomStream random(motion.seed, "walk");
+  const auto draw = [&](const Range& range) { return random.Uniform(range.least, range.most); };
+  double way_m = 0, pace_m_s = draw(motion.pace_m_s);
+  while (true) {
+    const double leg_s = std::min(walked_s, draw(motion.pace_every_s));
+    way_m += leg_s * pace_m_s;
+    walked_s -= leg_s;
+    if (!(walked_s > 0)) return way_m;
+    pace_m_s = std::clamp(pace_m_s * draw(motion.pace_factor), motion.pace_m_s.least,
+                          motion.pace_m_s.most);
+  }
+}
+
+Eigen::Vector3d PositionAfter(const WalkMotion& motion, double elapsed_s) {
+  const double walked_s = WalkTime(motion, elapsed_s);
+  const double swayed_m =
+      motion.sway_m * std::sin(2 * std::numbers::pi * motion.sway_rate_hz * walked_s);
+  return motion.start_m + WayWalked(motion, walked_s) * motion.direction +
+         swayed_m * LeftOf(motion.direction);
+}
+
 // The time on the track's own clock.
 double TrackTime(const RecordedMotion& motion, double elapsed_s) {
   const double recorded_m_s = motion.track->mean_speed_m_s();
@@ -118,6 +151,10 @@ Eigen::Vector3d DirectionAfter(const CircleMotion& motion, double elapsed_s) {
 
 Eigen::Vector3d DirectionAfter(const RandomWalkMotion& motion, double elapsed_s) {
   return AlongHeading(WalkFor(motion, elapsed_s).heading_rad);
+}
+
+Eigen::Vector3d DirectionAfter(const WalkMotion& motion, double) {
+  return motion.direction;  // who sways does not turn
 }
 
 Eigen::Vector3d DirectionAfter(const RecordedMotion& motion, double elapsed_s) {

@@ -80,6 +80,28 @@ struct RandomWalkMotion {
   double stop_at_s = 0;
   double begin_at_s = 0;
 };
+/// Between two numbers, least <= most.
+struct Range {
+  double least = 0, most = 0;
+  double middle() const { return (least + most) / 2; }
+};
+/// As a person walks: along a level line, at a pace that is drawn at first and changed now and then
+/// by a random factor within its bounds, swaying from side to side. A function of the seed: that of
+/// the scenario and the obstacle's place in it. All draws are even. Its clock runs so fast that the
+/// middle of the paces becomes speed_m_s; at 0 it rests at its start.
+struct WalkMotion {
+  Eigen::Vector3d start_m;
+  Eigen::Vector3d direction;  ///< unit length, level
+  Range pace_m_s;             ///< > 0
+  Range pace_every_s;         ///< > 0, from one change of pace to the next
+  Range pace_factor;          ///< > 0
+  double sway_m = 0;          ///< to either side of the line
+  double sway_rate_hz = 0;
+  std::uint64_t seed = 0;
+  double speed_m_s = 0;
+  double stop_at_s = 0;
+  double begin_at_s = 0;
+};
 /// Along a recorded track, whose times count from `begin_at_s`. Its clock runs so fast that the
 /// mean speed while it moves (RecordedTrack::mean_speed_m_s) becomes speed_m_s: as recorded if they
 /// are equal, at rest at its start if speed_m_s is 0. A track that stays in one place runs as
@@ -91,7 +113,7 @@ struct RecordedMotion {
   double begin_at_s = 0;
 };
 using Motion = std::variant<LinearMotion, WaypointMotion, AcceleratedMotion, CircleMotion,
-                            RandomWalkMotion, RecordedMotion>;
+                            RandomWalkMotion, WalkMotion, RecordedMotion>;
 
 struct MovingObstacle {
   std::string name;
@@ -240,5 +262,11 @@ std::map<std::string, std::vector<std::string>> ScenarioChoices(const std::strin
 
 /// The scenario as YAML that ParseScenario reads back to an equal value.
 std::string ToYaml(const Scenario& scenario);
+
+/// The same with a choice whose options, "1", "2", ..., have each the task and the moving obstacles
+/// of one of `options`; "1" is the default.
+/// @param options one or more, that differ from the scenario in nothing else.
+std::string ToYaml(const Scenario& scenario, const std::string& choice,
+                   const std::vector<Scenario>& options);
 
 }  // namespace sidestep::scenarios

@@ -27,6 +27,7 @@ constexpr int kMaxStates = 1001;
 constexpr double kLeastStep_s = 0.001;  // a control tick
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kShortestLeg_s = 0.01;
+constexpr double kSwayRate_hz = 1;  // of a person
 // Objects' fields are padded for it on all sides.
 constexpr double kMaxGrowth_m = 0.5;
 // The objective is weighted by the squares of these: beyond such bounds it has no digits left.
@@ -228,6 +229,32 @@ RandomWalkMotion ReadRandomWalk(const YamlReader& body) {
   return motion;
 }
 
+// [LEAST, MOST], both > 0.
+Range ReadPositiveRange(const YamlReader& body, const char* key) {
+  const Eigen::VectorXd numbers = body.GetVector(key, 2);
+  if (!(numbers(0) > 0 && numbers(0) <= numbers(1))) {
+    body.Fail(key, "must be [LEAST, MOST] with 0 < LEAST <= MOST, is " + List(numbers));
+  }
+  return {numbers(0), numbers(1)};
+}
+
+WalkMotion ReadWalk(const YamlReader& body) {
+  WalkMotion motion;
+  motion.start_m = body.GetVector3("start_m");
+  motion.direction = ReadDirection(body);
+  if (motion.direction.z() != 0) body.Fail("direction", "must be level: z must be 0");
+  motion.pace_m_s = ReadPositiveRange(body, "pace_m_s");
+  motion.pace_every_s = ReadPositiveRange(body, "pace_every_s");
+  if (motion.pace_every_s.least < kShortestLeg_s) {
+    body.Fail("pace_every_s", "must be at least 0.01 s");
+  }
+  motion.pace_factor = ReadPositiveRange(body, "pace_factor");
+  motion.sway_m = ReadOptional(body, "sway_m", 0);
+  motion.sway_rate_hz = ReadOptional(body, "sway_rate_hz", kSwayRate_hz);
+  motion.speed_m_s = motion.pace_m_s.middle();
+  return motion;
+}
+
 std::vector<TrackSample> ReadSamples(const YamlReader& body) {
   std::vector<TrackSample> samples;
   for (const std::vector<double>& row : body.GetRows("samples")) {
@@ -272,7 +299,7 @@ void ReadMotion(const YamlReader& parent, const std::optional<std::string>& fold
   const YamlReader map = parent.GetMap("motion");
   const std::string kind =
       ReadKind(map, "motion", parent,
-               {"linear", "waypoints", "accelerated", "circle", "random_walk", "recorded"});
+               {"linear", "waypoints", "accelerated", "circle", "random_walk", "walk", "recorded"});
   const YamlReader body = map.GetMap(kind);
   Motion& motion = obstacle.motion;
   if (kind == "linear") motion = ReadLinear(body);
@@ -280,8 +307,9 @@ void ReadMotion(const YamlReader& parent, const std::optional<std::string>& fold
   if (kind == "accelerated") motion = ReadAccelerated(body);
   if (kind == "circle") motion = ReadCircle(body);
   if (kind == "random_walk") motion = ReadRandomWalk(body);
+  if (kind == "walk") motion = ReadWalk(body);
   if (kind == "recorded") motion = ReadRecorded(folder, body);
-  const bool has_own_speed = kind == "recorded" && !body.Has("speed_m_s");
+  const bool has_own_speed = (kind == "walk" || kind == "recorded") && !body.Has("speed_m_s");
   std::visit(
       [&](auto& any) {
         if (!has_own_speed) any.speed_m_s = body.GetNonNegative("speed_m_s");
@@ -305,10 +333,11 @@ void ReadMotion(const YamlReader& parent, const std::optional<std::string>& fold
 void SeedMotions(Scenario& scenario) {
   std::uint64_t place = 0;
   for (MovingObstacle& obstacle : scenario.moving_obstacles) {
-    if (RandomWalkMotion* const walk = std::get_if<RandomWalkMotion>(&obstacle.motion)) {
-      walk->seed = 1000 * scenario.seed + place;
+    const std::uint64_t seed = 1000 * scenario.seed + place++;
+    if (auto* const random_walk = std::get_if<RandomWalkMotion>(&obstacle.motion)) {
+      random_walk->seed = seed;
     }
-    ++place;
+    if (auto* const walk = std::get_if<WalkMotion>(&obstacle.motion)) walk->seed = seed;
   }
 }
 

@@ -1,5 +1,7 @@
 #include <charconv>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "sidestep/core/joined.h"
 #include "sidestep/scenarios/scenario.h"
@@ -78,6 +80,16 @@ std::string KeysOf(const RandomWalkMotion& motion) {
          ", turn_every_s: " + Number(motion.turn_every_s);
 }
 
+std::string KeysOf(const WalkMotion& motion) {
+  const auto range = [](const Range& numbers) {
+    return "[" + Number(numbers.least) + ", " + Number(numbers.most) + "]";
+  };
+  return "walk: {start_m: " + List(motion.start_m) + ", direction: " + List(motion.direction) +
+         ", pace_m_s: " + range(motion.pace_m_s) + ", pace_every_s: " + range(motion.pace_every_s) +
+         ", pace_factor: " + range(motion.pace_factor) + ", sway_m: " + Number(motion.sway_m) +
+         ", sway_rate_hz: " + Number(motion.sway_rate_hz);
+}
+
 std::string KeysOf(const RecordedMotion& motion) {
   std::string rows;
   for (const TrackSample& sample : motion.track->samples()) {
@@ -101,17 +113,28 @@ std::string MotionText(const MovingObstacle& obstacle) {
       obstacle.motion);
 }
 
+// The keys of an obstacle, in order, each with its value.
+std::vector<std::pair<std::string, std::string>> ObstacleKeys(const MovingObstacle& obstacle) {
+  std::vector<std::pair<std::string, std::string>> keys = {{"name", Quoted(obstacle.name)},
+                                                           {"shape", ShapeText(obstacle.shape)}};
+  if (!obstacle.rpy_rad.isZero(0)) keys.emplace_back("rpy_rad", List(obstacle.rpy_rad));
+  if (!obstacle.appearance.empty()) keys.emplace_back("appearance", Quoted(obstacle.appearance));
+  keys.emplace_back("motion", MotionText(obstacle));
+  return keys;
+}
+
 const char* Word(bool value) { return value ? "true" : "false"; }
 
+std::string ConfigurationText(const std::string& name, const Eigen::VectorXd& q) {
+  return name.empty() ? List(q) : Quoted(name);
+}
+
 std::string RobotText(const Scenario& scenario) {
-  const auto configuration = [](const std::string& name, const Eigen::VectorXd& q) {
-    return name.empty() ? List(q) : Quoted(name);
-  };
   return "robot:\n  model: " + Quoted(scenario.robot) + "\n  base: {" +
          PoseKeys("position_m", scenario.X_WB) + "}\n" +
          (scenario.mount.empty() ? "" : "  mount: " + Quoted(scenario.mount) + "\n") +
-         "task:\n  start: " + configuration(scenario.start_name, scenario.q_start) +
-         "\n  goal: " + configuration(scenario.goal_name, scenario.q_goal) +
+         "task:\n  start: " + ConfigurationText(scenario.start_name, scenario.q_start) +
+         "\n  goal: " + ConfigurationText(scenario.goal_name, scenario.q_goal) +
          "\n  dwell_s: " + Number(scenario.dwell_s) +
          "\nhorizon: {duration_s: " + Number(scenario.horizon_s) +
          ", step_s: " + Number(scenario.step_s) + "}\n";
@@ -193,17 +216,34 @@ std::string ToYaml(const Scenario& scenario) {
   }
   if (!scenario.moving_obstacles.empty()) line("moving_obstacles:");
   for (const MovingObstacle& obstacle : scenario.moving_obstacles) {
-    line("  - name: " + Quoted(obstacle.name));
-    line("    shape: " + ShapeText(obstacle.shape));
-    if (!obstacle.rpy_rad.isZero(0)) line("    rpy_rad: " + List(obstacle.rpy_rad));
-    if (!obstacle.appearance.empty()) line("    appearance: " + Quoted(obstacle.appearance));
-    line("    motion: " + MotionText(obstacle));
+    const char* dash = "- ";
+    for (const auto& [key, value] : ObstacleKeys(obstacle)) {
+      line("  " + std::string(std::exchange(dash, "  ")) + key + ": " + value);
+    }
   }
   if (has_robot) text += PlannerText(scenario);
   line("knowledge: " + Quoted(scenario.knowledge));
   line("predictor: " + Quoted(scenario.predictor));
   text += ToYaml(scenario.sensor);
   line("seed: " + std::to_string(scenario.seed));
+  return text;
+}
+
+std::string ToYaml(const Scenario& scenario, const std::string& choice,
+                   const std::vector<Scenario>& options) {
+  std::string text =
+      ToYaml(scenario) + "choices:\n  " + choice + ":\n    default: \"1\"\n" + "    options:\n";
+  int number = 0;
+  for (const Scenario& option : options) {
+    text += "      \"" + std::to_string(++number) +
+            "\":\n        task: {start: " + ConfigurationText(option.start_name, option.q_start) +
+            ", goal: " + ConfigurationText(option.goal_name, option.q_goal) +
+            ", dwell_s: " + Number(option.dwell_s) + "}\n        moving_obstacles:\n";
+    for (const MovingObstacle& obstacle : option.moving_obstacles) {
+      const auto entry = [](const auto& key) { return key.first + ": " + key.second; };
+      text += "          - {" + Joined(ObstacleKeys(obstacle), ", ", entry) + "}\n";
+    }
+  }
   return text;
 }
 

@@ -1,5 +1,7 @@
 #include "sidestep/scenarios/variations.h"
 
+#include <memory>
+#include <utility>
 #include <variant>
 
 #include "sidestep/core/input_error.h"
@@ -12,8 +14,9 @@ namespace {
 
 constexpr const char* kSpeedFactor = "speed_factor";
 constexpr const char* kDelay = "delay_s";
+constexpr const char* kSideways = "sideways_m";
 // Bounds against slips of the pen.
-constexpr double kMaxSpeedFactor = 100, kMaxDelay_s = 60;
+constexpr Range kSpeedFactors{0, 100}, kDelays_s{0, 60}, kSideways_m{-100, 100};
 
 void Delay(Motion& motion, double delay_s) {
   std::visit(
@@ -24,22 +27,55 @@ void Delay(Motion& motion, double delay_s) {
       motion);
 }
 
+// What to move so that a motion goes the same way elsewhere.
+template <class AnyMotion>
+void Shift(AnyMotion& motion, const Eigen::Vector3d& by_m) {
+  motion.start_m += by_m;
+}
+void Shift(CircleMotion& motion, const Eigen::Vector3d& by_m) { motion.center_m += by_m; }
+void Shift(WaypointMotion& motion, const Eigen::Vector3d& by_m) {
+  for (Eigen::Vector3d& point_m : motion.points_m) point_m += by_m;
+}
+void Shift(RecordedMotion& motion, const Eigen::Vector3d& by_m) {
+  std::vector<TrackSample> samples = motion.track->samples();
+  for (TrackSample& sample : samples) sample.p_WO += by_m;
+  motion.track = std::make_shared<const RecordedTrack>(std::move(samples));
+}
+
+void MoveLeft(Motion& motion, double by_m) {
+  const Eigen::Vector3d way = DirectionAt(motion, EpisodeTime(0));
+  const Eigen::Vector3d left = Eigen::Vector3d(-way.y(), way.x(), 0).normalized();  // or zero
+  std::visit([&](auto& any) { Shift(any, by_m * left); }, motion);
+}
+
 // Draws what `key` says, if it is there, into scenario.drawn.
-void Draw(const YamlReader& map, const char* key, double most, Scenario& scenario) {
+void Draw(const YamlReader& map, const char* key, const Range& bounds, Scenario& scenario) {
   if (!map.Has(key)) return;
   const Eigen::VectorXd range = map.GetVector(key, 2);
-  if (!(range(0) >= 0 && range(0) < range(1) && range(1) <= most)) {
-    map.Fail(key, "must be [LEAST, MOST] with 0 <= LEAST < MOST <= " + Number(most) + ", is " +
-                      List(range));
+  if (!(range(0) >= bounds.least && range(0) < range(1) && range(1) <= bounds.most)) {
+    map.Fail(key, "must be [LEAST, MOST] with " + Number(bounds.least) +
+                      " <= LEAST < MOST <= " + Number(bounds.most) + ", is " + List(range));
   }
   if (scenario.moving_obstacles.empty()) return;
   RandomStream random(scenario.seed, std::string("variations.") + key);
   scenario.drawn[key] = random.Uniform(range(0), range(1));
 }
 
-double SpeedFactor(const Scenario& scenario) {
-  const auto drawn = scenario.drawn.find(kSpeedFactor);
-  return drawn == scenario.drawn.end() ? 1 : drawn->second;
+double DrawnOr(const Scenario& scenario, const char* key, double otherwise) {
+  const auto drawn = scenario.drawn.find(key);
+  return drawn == scenario.drawn.end() ? otherwise : drawn->second;
+}
+
+// Whether another seed would let it go another way.
+template <class AnyMotion>
+bool IsRandom(const AnyMotion&) {
+  return false;
+}
+bool IsRandom(const RandomWalkMotion& motion) {
+  return motion.turn_rad > 0 && motion.speed_m_s > 0;
+}
+bool IsRandom(const WalkMotion& motion) {
+  return motion.pace_m_s.least < motion.pace_m_s.most && motion.speed_m_s > 0;
 }
 
 void AddChangedNoise(const SensorSettings& sensor, std::vector<std::string>& changed) {
@@ -66,13 +102,17 @@ void AddChangedNoise(const SensorSettings& sensor, std::vector<std::string>& cha
 void DrawVariations(const YamlReader& top, Scenario& scenario) {
   if (!top.Has("variations")) return;
   const YamlReader map = top.GetMap("variations");
-  Draw(map, kSpeedFactor, kMaxSpeedFactor, scenario);
-  Draw(map, kDelay, kMaxDelay_s, scenario);
+  Draw(map, kSpeedFactor, kSpeedFactors, scenario);
+  Draw(map, kDelay, kDelays_s, scenario);
+  Draw(map, kSideways, kSideways_m, scenario);
   map.CheckNoUnknownKeys();
-  ScaleSpeeds(scenario, SpeedFactor(scenario));
-  const auto delay = scenario.drawn.find(kDelay);
-  if (delay == scenario.drawn.end()) return;
-  for (MovingObstacle& obstacle : scenario.moving_obstacles) Delay(obstacle.motion, delay->second);
+  ScaleSpeeds(scenario, DrawnOr(scenario, kSpeedFactor, 1));
+  for (MovingObstacle& obstacle : scenario.moving_obstacles) {
+    Delay(obstacle.motion, DrawnOr(scenario, kDelay, 0));
+    if (scenario.drawn.count(kSideways) != 0) {
+      MoveLeft(obstacle.motion, scenario.drawn.at(kSideways));
+    }
+  }
 }
 
 void SetSpeed(Scenario& scenario, double speed_m_s) {
@@ -80,7 +120,7 @@ void SetSpeed(Scenario& scenario, double speed_m_s) {
     throw InputError("--speed", "this scenario has no moving obstacle");
   }
   if (speed_m_s > YamlReader::kLargestNumber) throw InputError("--speed", "must be at most 1e12");
-  const double drawn_m_s = speed_m_s * SpeedFactor(scenario);
+  const double drawn_m_s = speed_m_s * DrawnOr(scenario, kSpeedFactor, 1);
   for (MovingObstacle& obstacle : scenario.moving_obstacles) {
     // Its greatest speed has the factor already.
     const auto* const accelerated = std::get_if<AcceleratedMotion>(&obstacle.motion);
@@ -95,9 +135,10 @@ std::vector<std::string> WhatTheSeedChanges(const Scenario& scenario) {
   std::vector<std::string> changed;
   for (const auto& [key, value] : scenario.drawn) changed.push_back("variations." + key);
   for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
-    const auto* const walk = std::get_if<RandomWalkMotion>(&scenario.moving_obstacles[i].motion);
-    if (walk && walk->turn_rad > 0 && walk->speed_m_s > 0) {
-      changed.push_back("moving_obstacles[" + std::to_string(i) + "].motion.random_walk");
+    const Motion& motion = scenario.moving_obstacles[i].motion;
+    if (std::visit([](const auto& any) { return IsRandom(any); }, motion)) {
+      const char* const kind = std::holds_alternative<WalkMotion>(motion) ? "walk" : "random_walk";
+      changed.push_back("moving_obstacles[" + std::to_string(i) + "].motion." + kind);
     }
   }
   AddChangedNoise(scenario.sensor, changed);

@@ -7,7 +7,6 @@
 #include "sidestep/bench/planner_bench/hit_pairs.h"
 #include "sidestep/bench/scenario_planner.h"
 #include "sidestep/bench/true_world.h"
-#include "sidestep/scenarios/scenario.h"
 #include "sidestep/sdf/composite_field.h"
 #include "sidestep/sdf/map/distance_transform.h"
 #include "sidestep/sdf/map/object_field.h"
@@ -58,13 +57,19 @@ sdf::SdfGrid StaticGrid(const scenarios::Scenario& scenario) {
   return sdf::ComputeSignedDistance(cells);
 }
 
-PlannerProblem MakePairs(const PairProblem& pairs, const std::string& models_dir,
-                         const std::string& scenarios_dir, std::uint64_t seed, int num_tasks) {
+scenarios::Scenario SceneOf(const PairProblem& pairs, const std::string& scenarios_dir) {
   scenarios::Scenario scenario =
       scenarios::LoadScenario(scenarios_dir + "/" + pairs.scenario + ".yaml");
-  scenario.moving_obstacles.front().shape = pairs.obstacle;
-  std::get<scenarios::LinearMotion>(scenario.moving_obstacles.front().motion).start_m.z() =
-      pairs.height_m;
+  scenarios::MovingObstacle& obstacle = scenario.moving_obstacles.front();
+  obstacle.shape = pairs.obstacle;
+  obstacle.appearance.clear();  // it belongs to another shape
+  std::get<scenarios::LinearMotion>(obstacle.motion).start_m.z() = pairs.height_m;
+  return scenario;
+}
+
+PlannerProblem MakePairs(const PairProblem& pairs, const std::string& models_dir,
+                         const std::string& scenarios_dir, std::uint64_t seed, int num_tasks) {
+  const scenarios::Scenario scenario = SceneOf(pairs, scenarios_dir);
   PlannerProblem problem;
   problem.name = pairs.name;
   problem.robot = std::make_shared<robot::RobotModel>(
@@ -124,9 +129,30 @@ PlannerProblem MakeReference(const std::string& name, const std::string& models_
 }  // namespace
 
 std::vector<std::string> PlannerProblemNames() {
-  std::vector<std::string> names = {"gpmp2_reference_n1", "gpmp2_reference_n19"};
+  std::vector<std::string> names = HitPairNames();
+  names.insert(names.begin(), {"gpmp2_reference_n1", "gpmp2_reference_n19"});
+  return names;
+}
+
+std::vector<std::string> HitPairNames() {
+  std::vector<std::string> names;
   for (const PairProblem& pairs : PairProblems()) names.emplace_back(pairs.name);
   return names;
+}
+
+HitPairs MakeHitPairs(const std::string& name, const std::string& models_dir,
+                      const std::string& scenarios_dir, std::uint64_t seed, int num_tasks) {
+  for (const PairProblem& pairs : PairProblems()) {
+    if (name != pairs.name) continue;
+    HitPairs made{SceneOf(pairs, scenarios_dir), {}};
+    const robot::RobotModel robot =
+        robot::RobotModel::Load(models_dir, made.scene.robot, made.scene.X_WB);
+    for (int number = 0; number < num_tasks; ++number) {
+      made.tasks.push_back(MakeHitPair(made.scene, robot, pairs.options, seed, number));
+    }
+    return made;
+  }
+  throw std::invalid_argument("no pairs are called '" + name + "'");
 }
 
 PlannerProblem MakePlannerProblem(const std::string& name, const std::string& models_dir,

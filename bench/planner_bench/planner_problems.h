@@ -9,6 +9,7 @@
 #include "sidestep/planner/planner.h"
 #include "sidestep/planner/planner_settings.h"
 #include "sidestep/robot/robot_model.h"
+#include "sidestep/scenarios/scenario.h"
 #include "sidestep/sdf/distance_field.h"
 
 namespace sidestep::bench {
@@ -37,6 +38,18 @@ struct PlannerProblem {
 /// mobile robot 1.0 m high through hsr_walkway at 1 to 2 m/s), "person_high" (a capsule 1.7 m high
 /// at 0.5 to 2 m/s) and "wam" (the pillar of wam_single_pillar at 0.3 to 0.9 m/s).
 std::vector<std::string> PlannerProblemNames();
+/// Those of pairs alone.
+std::vector<std::string> HitPairNames();
+
+/// The pairs of a problem as scenarios, for episodes: of the scene they were drawn in, each has a
+/// task and an obstacle of its own.
+struct HitPairs {
+  scenarios::Scenario scene;
+  std::vector<scenarios::Scenario> tasks;
+};
+/// @throws as MakePlannerProblem, which makes the same.
+HitPairs MakeHitPairs(const std::string& name, const std::string& models_dir,
+                      const std::string& scenarios_dir, std::uint64_t seed, int num_tasks);
 
 /// @param num_tasks of a problem that has many.
 /// @throws std::invalid_argument for another name; InputError for what is wrong with the files.

@@ -55,6 +55,25 @@ TEST_P(PairsOf, AreDecidedBySeedAndNumber) {
   }
 }
 
+TEST_P(PairsOf, AreWrittenAsAScenarioWithAChoice) {
+  const PlannerProblem problem = Problem(GetParam(), 3);
+  const HitPairs pairs = MakeHitPairs(GetParam(), SIDESTEP_SOURCE_DIR "/models",
+                                      SIDESTEP_SOURCE_DIR "/scenarios", 1, 3);
+  const std::string yaml = ToYaml(pairs.scene, "pair", pairs.tasks);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const scenarios::Scenario read =
+        scenarios::ParseScenario(yaml, "pairs.yaml", {{"pair", std::to_string(i + 1)}});
+    EXPECT_EQ(read.q_start, problem.tasks[i].request.q_start);
+    EXPECT_EQ(read.q_goal, problem.tasks[i].request.q_goal);
+    const double t_s = 1.3;
+    EXPECT_EQ(PoseAt(read.moving_obstacles.front(), EpisodeTime(t_s)).translation(),
+              PoseAt(pairs.tasks[i].moving_obstacles.front(), EpisodeTime(t_s)).translation());
+    EXPECT_EQ(read.moving_obstacles.front().shape.index(),
+              pairs.scene.moving_obstacles.front().shape.index());
+    EXPECT_EQ(read.planner, pairs.scene.planner);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Problems, PairsOf, ::testing::Values("hsr", "person_high", "wam"),
                          [](const auto& test) { return test.param; });
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sidestep/bench/free_path_search.h"
+#include "sidestep/bench/paired_table.h"
 #include "sidestep/bench/resolve.h"
 #include "sidestep/bench/study_page.h"
 
@@ -63,6 +64,61 @@ TEST(OutcomeTable, HoldsNamesThatLookLikeMarkdown) {
   const std::vector<StudyRow> rows = {Row("a|b\nc", "imm", "goal")};
   EXPECT_EQ(OutcomeTable(rows, {"behaviour", "predictor"}),
             "| behaviour | imm |\n|---|---|\n| a\\|b c | 1/1 |\n| all | 1/1 |\n");
+}
+
+// An episode of one seed at one pace.
+StudyRow Episode(const std::string& pace, int seed, bool goal, double clearance_m, double time_s) {
+  StudyRow row;
+  row.factors = {{"pace", pace}, {"behaviour", "stop"}, {"seed", std::to_string(seed)}};
+  row.outcome = goal ? "goal" : "collision";
+  row.metrics = {{"min_clearance_m", clearance_m}, {"time_to_goal_s", goal ? time_s : NAN}};
+  return row;
+}
+
+TEST(PairedTable, SetsTheSameEpisodesBesideEachOther) {
+  std::vector<StudyRow> rows;
+  for (int seed = 1; seed <= 30; ++seed) {
+    // Each has a clearance of its own, and 20 mm more where it is fast; every third then arrives.
+    rows.push_back(Episode("slow", seed, seed % 3 != 0, 0.01 * seed, 3));
+    rows.push_back(Episode("fast", seed, true, 0.01 * seed + 0.02, 2.5));
+  }
+  rows.push_back(Episode("fast", 31, true, 5, 1));  // without a partner
+  rows.push_back(Episode("slow", 32, true, 5, 1));
+  rows.push_back(Episode("fast", 32, true, 5, 1));
+  rows.back().outcome = kFailed;
+  const std::string table = PairedTable(rows, {"behaviour", "pace"});
+  EXPECT_THAT(table, HasSubstr("| behaviour | pace | pairs | goal [%] | difference | clearance"));
+  EXPECT_THAT(table, HasSubstr("| stop | slow | 31 | 67.7 | – | 160.0 | – | 3.000 | – | – | – |"));
+  EXPECT_THAT(table, HasSubstr("| stop | fast | 30 | 100.0 | +33.3 ("));
+  EXPECT_THAT(table,
+              HasSubstr(" | 175.0 | +20.0 (20.0 to 20.0) | 2.500 | -0.500 (-0.500 to -0.500)"));
+  EXPECT_THAT(table, HasSubstr("| all | fast | 30 | 100.0 | +33.3 ("));
+}
+
+TEST(PairedTable, DrawsSeedsAndNotEpisodes) {
+  std::vector<StudyRow> rows;
+  for (const char* const behaviour : {"stop", "turn", "park", "leave"}) {  // all alike
+    for (int seed = 1; seed <= 12; ++seed) {
+      for (const char* const pace : {"slow", "fast"}) {
+        const bool is_fast = pace == std::string("fast");
+        rows.push_back(Episode(pace, seed, true, is_fast ? 0.01 * seed : 0, 3));
+        rows.back().factors["behaviour"] = behaviour;
+      }
+    }
+  }
+  const std::string table = PairedTable(rows, {"behaviour", "pace"});
+  // Four times the same episodes tell no more than one time.
+  const auto interval = [&](const std::string& line) {
+    const std::size_t begin = table.find(line);
+    const std::size_t at = table.find("+65.0 (", begin);
+    return table.substr(at, table.find(')', at) - at);
+  };
+  EXPECT_EQ(interval("| all | fast |"), interval("| stop | fast |"));
+}
+
+TEST(PairedTable, IsEmptyWhereNothingVariesAcross) {
+  EXPECT_EQ(PairedTable({Episode("slow", 1, true, 1, 1)}, {"behaviour", "pace"}), "");
+  EXPECT_EQ(PairedTable({Episode("slow", 1, true, 1, 1)}, {"behaviour", ""}), "");
 }
 
 TEST(StudyPage, SaysWhatIsVariedAndWhatIsNot) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "sidestep/cli/shell_quote.h"
+#include "sidestep/cli/varied_keys.h"
 #include "sidestep/core/input_error.h"
 
 namespace sidestep::cli {
@@ -65,6 +66,70 @@ TEST(RunCommandOf, NamesEveryFactor) {
             "sidestep run 'scenes/my room.yaml' --set behaviour=stop --knowledge static "
             "--set planner.qc=2 --seed 3 --speed 0.8");
   EXPECT_EQ(RunCommandOf("a", {{"knowledge", "search"}}), "");
+  EXPECT_EQ(RunCommandOf("a", {{"replanning.latency_s/replanning.rate_hz", "0.1/10"}}),
+            "sidestep run a --set replanning.latency_s=0.1 --set replanning.rate_hz=10");
+}
+
+TEST(VariedKeys, AreReadWithTheirValues) {
+  const VariedKeys one = ParseVariedKeys("planner.qc=1,2,0.5");
+  EXPECT_EQ(one.factor, "planner.qc");
+  EXPECT_EQ(one.values, (std::vector<std::string>{"1", "2", "0.5"}));
+  const VariedKeys list = ParseVariedKeys("task.goal=[1, 2],{a: [3, 4], b: 5},\"x,y\",ready");
+  EXPECT_EQ(list.values,
+            (std::vector<std::string>{"[1, 2]", "{a: [3, 4], b: 5}", "\"x,y\"", "ready"}));
+  EXPECT_EQ(ParseVariedKeys("sensor.name=a/b").values, (std::vector<std::string>{"a/b"}));
+}
+
+TEST(VariedKeys, ThatGoTogetherAreSetTogether) {
+  const VariedKeys both = ParseVariedKeys("a.b/c[0]=0.1/[1/2],0.2/x");
+  EXPECT_EQ(both.factor, "a.b/c[0]");
+  using Settings = std::vector<std::pair<std::string, std::string>>;
+  EXPECT_EQ(SettingsOf(both.factor, both.values.at(0)),
+            (Settings{{"a.b", "0.1"}, {"c[0]", "[1/2]"}}));
+  EXPECT_EQ(SettingsOf(both.factor, both.values.at(1)), (Settings{{"a.b", "0.2"}, {"c[0]", "x"}}));
+  EXPECT_EQ(SettingsOf("file", "a/b"), (Settings{{"file", "a/b"}}));
+}
+
+std::string Complaint(const StudySpace& space) {
+  try {
+    StudyCases(space, {SIDESTEP_SOURCE_DIR "/models", SIDESTEP_SOURCE_DIR "/scenarios"});
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "was accepted";
+}
+
+TEST(StudyCases, CrossWhatIsVaried) {
+  StudySpace space;
+  space.scenario = "walkway_behaviours";
+  space.varied = {"behaviour=stop,turn", "replanning.latency_s/replanning.rate_hz=0.1/10,0.02/50"};
+  space.episodes = 3;
+  const std::vector<bench::Factors> cases =
+      StudyCases(space, {SIDESTEP_SOURCE_DIR "/models", SIDESTEP_SOURCE_DIR "/scenarios"});
+  ASSERT_EQ(cases.size(), 12u);
+  EXPECT_EQ(cases.front(), (bench::Factors{{"behaviour", "stop"},
+                                           {"replanning.latency_s/replanning.rate_hz", "0.1/10"},
+                                           {"seed", "1"}}));
+  EXPECT_EQ(cases.back(), (bench::Factors{{"behaviour", "turn"},
+                                          {"replanning.latency_s/replanning.rate_hz", "0.02/50"},
+                                          {"seed", "3"}}));
+}
+
+TEST(StudyCases, RefuseWhatCannotBeVaried) {
+  const auto complaint = [](const std::vector<std::string>& varied) {
+    StudySpace space;
+    space.scenario = "walkway_behaviours";
+    space.settings = {"planner.qc=2"};
+    space.varied = varied;
+    return Complaint(space);
+  };
+  EXPECT_EQ(complaint({"planner.sigma_obs=1,2"}), "was accepted");
+  EXPECT_EQ(complaint({"planner"}), "--vary: must be KEY=VALUE,VALUE,..., is 'planner'");
+  EXPECT_EQ(complaint({"planner.qc=1,2"}), "--set planner.qc: is given twice");
+  EXPECT_EQ(complaint({"a/b=1/2,3"}), "--vary a/b: needs 2 values with / between them, is '3'");
+  EXPECT_EQ(complaint({"planner.n_int=1,1"}), "planner.n_int: '1' is given twice");
+  EXPECT_EQ(complaint({"seed=1,2"}), "--vary seed: is what --episodes varies");
+  EXPECT_EQ(complaint({"speed_m_s=1,2"}), "--vary speed_m_s: is what --speed varies");
 }
 
 TEST(ShellQuoted, LeavesPlainWordsAndQuotesTheOthers) {

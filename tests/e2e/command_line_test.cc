@@ -519,6 +519,33 @@ TEST(Study, SaysOnItsPageWhatItIsOf) {
                     HasSubstr("| knowledge | episodes |")));
 }
 
+TEST(Study, VariesKeysTogetherAndSetsTheSameEpisodesBesideEachOther) {
+  const TemporaryFolder folder;
+  const Finished finished = QuickStudy(
+      folder.path(), {"--vary", "behaviour=stop,turn", "--vary",
+                      "replanning.latency_s/replanning.rate_hz=0.1/10,0.02/50", "--episodes", "2"});
+  EXPECT_EQ(finished.exit_code, 0) << finished.err;
+  EXPECT_THAT(TextOf(folder.path() / "study.csv"),
+              HasSubstr("--set replanning.latency_s=0.02 --set replanning.rate_hz=50"));
+  EXPECT_THAT(TextOf(folder.path() / "study.md"),
+              AllOf(HasSubstr("| behaviour | 0.1/10 | 0.02/50 |"),
+                    HasSubstr("\n| turn | 0.02/50 | 2 |"), HasSubstr("\n| all | 0.1/10 | 4 |")));
+}
+
+TEST(Bench, WritesPairsThatAStudyRuns) {
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "pairs.yaml").string();
+  const Finished written = Sidestep({"bench", "pairs", "hsr", "--pairs", "2", "--out", file});
+  EXPECT_EQ(written.exit_code, 0) << written.err;
+  const Finished study =
+      Sidestep({"study", file, "--set", "planner.name=straight_line", "--knowledge", "static",
+                "--out", (folder.path() / "study").string()});
+  EXPECT_EQ(study.exit_code, 0) << study.err;
+  EXPECT_THAT(study.out, HasSubstr("| all | 0/2 |\n| collision | 2 |"));
+  EXPECT_THAT(Sidestep({"bench", "pairs", "tsr"}).err,
+              StartsWith("PROBLEM: must be one of hsr, person_high, wam, is 'tsr'"));
+}
+
 TEST(Study, GoesIntoAFolderOfItsScenario) {
   const TemporaryFolder folder;
   const Finished finished =

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "sidestep/scenarios/scenario.h"
 
@@ -104,6 +106,83 @@ TEST(RandomWalkMotion, TurnsAsMuchAsItIsToldTo) {
   EXPECT_NEAR(std::sqrt(sum / 500), 0.4, 0.04);
 }
 
+// Someone as in walkway_people, without the sway.
+WalkMotion Walker(std::uint64_t seed) {
+  return {{0, 0, 1}, {0, 1, 0}, {0.8, 1.8}, {0.5, 1.5}, {0.7, 1.3}, 0, 1, seed, 1.3, kNever, 0};
+}
+
+// Each pace of someone's walk and when it begins, seen from outside.
+std::vector<std::pair<double, double>> PacesOf(const WalkMotion& motion, double until_s) {
+  constexpr double kStep_s = 1e-3;
+  std::vector<std::pair<double, double>> paces;
+  for (int i = 1; i < until_s / kStep_s; ++i) {
+    const double t_s = i * kStep_s;
+    const auto pace = [&](double from_s) {
+      return (PositionAt(motion, from_s + kStep_s) - PositionAt(motion, from_s)).y() / kStep_s;
+    };
+    const bool is_steady = std::abs(pace(t_s) - pace(t_s - kStep_s)) < 1e-9;
+    const bool is_new = paces.empty() || std::abs(pace(t_s) - paces.back().second) > 1e-6;
+    if (is_steady && is_new) paces.emplace_back(t_s, pace(t_s));
+  }
+  return paces;
+}
+
+TEST(WalkMotion, ChangesItsPaceByItsFactorsWithinItsBounds) {
+  double first = 0, factors = 0, legs_s = 0;
+  int num_factors = 0;
+  constexpr int kSeeds = 60;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const auto paces = PacesOf(Walker(seed), 6);
+    first += paces.front().second / kSeeds;
+    for (std::size_t i = 0; i < paces.size(); ++i) {
+      EXPECT_GE(paces[i].second, 0.8 - 1e-9);
+      EXPECT_LE(paces[i].second, 1.8 + 1e-9);
+      if (i == 0) continue;
+      const double factor = paces[i].second / paces[i - 1].second;
+      EXPECT_GE(factor, 0.7 - 1e-6);
+      EXPECT_LE(factor, 1.3 + 1e-6);
+      // Before and after a bound a change may not show.
+      const auto at_a_bound = [](double pace) { return pace < 0.8 + 1e-6 || pace > 1.8 - 1e-6; };
+      if (at_a_bound(paces[i].second) || at_a_bound(paces[i - 1].second)) continue;
+      const double leg_s = paces[i].first - paces[i - 1].first;
+      EXPECT_GE(leg_s, 0.5 - 0.003);
+      EXPECT_LE(leg_s, 1.5 + 0.003);
+      factors += factor;
+      legs_s += leg_s;
+      ++num_factors;
+    }
+  }
+  EXPECT_GT(num_factors, 100);
+  EXPECT_NEAR(first, 1.3, 4 * 1 / std::sqrt(12.0 * kSeeds));
+  EXPECT_NEAR(factors / num_factors, 1, 4 * 0.6 / std::sqrt(12.0 * num_factors));
+  EXPECT_NEAR(legs_s / num_factors, 1, 4 * 1 / std::sqrt(12.0 * num_factors));
+}
+
+TEST(WalkMotion, SwaysAboutItsLineAsOftenAsItIsToldTo) {
+  WalkMotion motion = Walker(3);
+  const WalkMotion straight = motion;
+  motion.sway_m = 0.03;
+  for (const double t_s : {0.0, 0.25, 0.5, 0.75, 1.0, 3.25}) {
+    const Eigen::Vector3d sway = PositionAt(motion, t_s) - PositionAt(straight, t_s);
+    ExpectNear(sway, {-0.03 * std::sin(2 * M_PI * t_s), 0, 0});
+  }
+}
+
+TEST(WalkMotion, IsAFunctionOfItsSeed) {
+  EXPECT_EQ(PositionAt(Walker(7), 3), PositionAt(Walker(7), 3));
+  EXPECT_GT((PositionAt(Walker(7), 3) - PositionAt(Walker(8), 3)).norm(), 0.01);
+}
+
+TEST(WalkMotion, IsTheSameWalkAtAnotherSpeed) {
+  WalkMotion motion = Walker(5);
+  motion.sway_m = 0.03;
+  WalkMotion slow = motion;
+  slow.speed_m_s /= 2;
+  for (const double t_s : {0.3, 1.0, 2.7}) {
+    ExpectNear(PositionAt(slow, 2 * t_s), PositionAt(motion, t_s));
+  }
+}
+
 TEST(EveryMotion, RestsAtItsStartUntilItBegins) {
   const Motion motions[] = {
       LinearMotion{{1, 2, 3}, {1, 0, 0}, 1, kNever, 0.5},
@@ -111,6 +190,8 @@ TEST(EveryMotion, RestsAtItsStartUntilItBegins) {
       AcceleratedMotion{{1, 2, 3}, {1, 0, 0}, 1, 1, 0, kNever, kNever, 0.5},
       CircleMotion{{0, 2, 3}, 1, 0, false, 1, kNever, 0.5},
       RandomWalkMotion{{1, 2, 3}, 0, 0.1, 0.5, 1, 1, kNever, 0.5},
+      WalkMotion{
+          {1, 2, 3}, {1, 0, 0}, {0.95, 1.05}, {0.5, 1}, {0.9, 1.1}, 0.02, 1, 1, 1, kNever, 0.5},
   };
   for (const Motion& motion : motions) {
     ExpectNear(PositionAt(motion, 0.5), {1, 2, 3});
@@ -144,6 +225,8 @@ TEST(ScaleSpeeds, LetsEveryMotionGoItsWaySoManyTimesAsFast) {
       AcceleratedMotion{{0, 0, 0}, {1, 0, 0}, 1.5, -2, 0.3, kNever, kNever, 0},
       CircleMotion{{1, 2, 0.5}, 0.5, 0.3, true, 0.7, kNever, 0},
       RandomWalkMotion{{1, 2, 0.5}, 0.3, 0.8, 0.4, 11, 0.7, kNever, 0},
+      // Its changes of pace come sooner, too: it goes the same way, but not at each moment as fast.
+      WalkMotion{{1, 2, 0.5}, {1, 0, 0}, {0.7, 0.7}, {0.3, 0.6}, {1, 1}, 0, 1, 11, 0.7, kNever, 0},
   };
   for (const Motion& motion : motions) {
     for (const double factor : {0.0, 0.75, 1.0, 1.3, 2.0}) {

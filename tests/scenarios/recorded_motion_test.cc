@@ -111,6 +111,8 @@ std::vector<Motion> AllKinds() {
       CircleMotion{{0, 2, 3}, 1, 0.3, false, 1, 4, 0.5},
       CircleMotion{{0, 2, 3}, 1, 0.3, true, 1, 4, 0.5},
       RandomWalkMotion{{1, 2, 3}, 0.7, 0.4, 0.5, 1, 1, 4, 0.5},
+      WalkMotion{
+          {1, 2, 3}, {0.6, 0.8, 0}, {0.8, 1.8}, {0.5, 1.5}, {0.7, 1.3}, 0, 1, 1, 1.3, 4, 0.5},
   };
 }
 
@@ -147,6 +149,12 @@ TEST(FacingAlongThePath, OfWaypointsTurnsAtACornerAndKeepsItsHeadingOnAVerticalL
   EXPECT_EQ(YawAt(obstacle, 2.5), 0);  // rises again
   EXPECT_DOUBLE_EQ(YawAt(obstacle, 3.001), -kPi / 2);
   EXPECT_DOUBLE_EQ(YawAt(obstacle, 60), -kPi / 2);
+}
+
+TEST(FacingAlongThePath, OfAPersonIsAlongTheLineHoweverTheySway) {
+  const WalkMotion motion{{0, 0, 0}, {0, 1, 0}, {0.8, 1.8}, {0.5, 1.5}, {0.7, 1.3}, 0.03,
+                          1,         1,         1.3,        kNever,     0};
+  for (const double t_s : {0.0, 0.3, 1.7}) EXPECT_DOUBLE_EQ(YawAt(Facing(motion), t_s), kPi / 2);
 }
 
 TEST(FacingAlongThePath, IsAlongXForWhatNeverMovesOnTheLevel) {

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <variant>
 
@@ -22,6 +24,25 @@ Scenario Load(const std::string& name, const Settings& settings) {
 
 double SpeedOf(const MovingObstacle& obstacle) {
   return std::visit([](const auto& motion) { return motion.speed_m_s; }, obstacle.motion);
+}
+
+// That all obstacles of `there` are where those of `here` are, by what was drawn further to the
+// left of where these go first.
+void ExpectMovedLeft(const Scenario& here, const Scenario& there) {
+  for (std::size_t i = 0; i < here.moving_obstacles.size(); ++i) {
+    const MovingObstacle& obstacle = here.moving_obstacles[i];
+    const Eigen::Vector3d way = DirectionAt(obstacle.motion, EpisodeTime(0));
+    const Eigen::Vector3d left = Eigen::Vector3d(-way.y(), way.x(), 0).normalized();
+    EXPECT_GT(left.norm(), 0.5);
+    for (const double t_s : {0.0, 0.7, 1.3, 3.0}) {
+      const auto position = [&](const MovingObstacle& one) {
+        return PoseAt(one, EpisodeTime(t_s)).translation();
+      };
+      const Eigen::Vector3d moved = position(there.moving_obstacles[i]) - position(obstacle);
+      EXPECT_LT((moved - there.drawn.at("sideways_m") * left).norm(), 1e-12)
+          << obstacle.name << " at " << t_s;
+    }
+  }
 }
 
 TEST(Variations, AreDecidedByTheSeedAndTheSameForAllObstacles) {
@@ -61,6 +82,39 @@ TEST(Variations, FillTheirRangesEvenly) {
   EXPECT_NEAR(factors, 0, four_standard_errors);
   EXPECT_NEAR(delays_s, 0, four_standard_errors);
   EXPECT_NEAR(products, 0, 4 / std::sqrt(1.0 * kSeeds));  // neither follows from the other
+}
+
+TEST(Variations, MoveEveryKindOfMotionSidewaysOfItsWay) {
+  const std::string away = "{sideways_m: [0.1, 0.2]}";
+  for (const char* const behaviour :
+       {"straight", "turn", "brake_2", "circle", "random_walk", "crossing"}) {
+    const Scenario there =
+        Load("walkway_behaviours", {{"behaviour", behaviour}, {"variations", away}});
+    const Scenario here =
+        Load("walkway_behaviours", {{"behaviour", behaviour}, {"variations", "{}"}});
+    ExpectMovedLeft(here, there);
+  }
+  ExpectMovedLeft(Load("walkway_person", {}), Load("walkway_person", {{"variations", away}}));
+  ExpectMovedLeft(Load("walkway_people", {{"variations", "{}"}}),
+                  Load("walkway_people", {{"variations", away}}));
+}
+
+TEST(Variations, OfPeopleAreThoseOfTheSeed) {
+  double least = 1, most = -1;
+  for (int seed = 1; seed <= 40; ++seed) {
+    const Scenario scenario = Load("walkway_people", {{"seed", std::to_string(seed)}});
+    const auto& walk = std::get<WalkMotion>(scenario.moving_obstacles[0].motion);
+    const double to_the_left_m = walk.start_m.x() - 0.37;  // it walks towards -y
+    EXPECT_NEAR(to_the_left_m, scenario.drawn.at("sideways_m"), 1e-12);
+    EXPECT_LE(std::abs(to_the_left_m), 0.15);
+    EXPECT_EQ(walk.begin_at_s, scenario.drawn.at("delay_s"));
+    least = std::min(least, to_the_left_m);
+    most = std::max(most, to_the_left_m);
+    const Scenario again = ParseScenario(ToYaml(scenario), "written.yaml");
+    EXPECT_EQ(ToYaml(again), ToYaml(scenario));
+  }
+  EXPECT_LT(least, -0.1);
+  EXPECT_GT(most, 0.1);
 }
 
 TEST(Variations, DoNotDependOnEachOther) {
@@ -106,6 +160,9 @@ TEST(WhatTheSeedChanges, NamesEverythingThatIsRandom) {
   EXPECT_THAT(WhatTheSeedChanges(Load("walkway_behaviours", {{"behaviour", "random_walk"}})),
               ElementsAre("variations.delay_s", "variations.speed_factor",
                           "moving_obstacles[0].motion.random_walk"));
+  EXPECT_THAT(WhatTheSeedChanges(Load("walkway_people", {})),
+              ElementsAre("variations.delay_s", "variations.sideways_m",
+                          "moving_obstacles[0].motion.walk"));
   const Scenario noisy = Load("hsr_walkway", {{"sensor.jitter_s", "0.01"},
                                               {"sensor.dropout", "0.1"},
                                               {"sensor.noise", "{false_free: 0.1}"}});
