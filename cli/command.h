@@ -27,6 +27,7 @@ void AddDoctorCommand(CommandLine& line);
 void AddFieldCommand(CommandLine& line);
 void AddFciServerCommand(CommandLine& line);
 void AddHardwareCommand(CommandLine& line);
+void AddValidateCommand(CommandLine& line);
 void AddManualCommand(CommandLine& line);
 
 }  // namespace sidestep::cli

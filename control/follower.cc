@@ -12,14 +12,17 @@ constexpr double kQuickening_per_s = 4;   // from full speed to rest in a quarte
 
 TrackerLimits LimitsUnder(const SafetySettings& safety, const robot::RobotModel& robot,
                           const TrackerLimits& limits) {
-  if (safety.profile != SafetyProfile::kLab) return limits;
+  return safety.profile == SafetyProfile::kLab ? LabLimits(robot, safety) : limits;
+}
+
+}  // namespace
+
+TrackerLimits LabLimits(const robot::RobotModel& robot, const SafetySettings& safety) {
   TrackerLimits lab = TrackerLimits::Of(robot, safety.v_share, safety.a_share, safety.jerk_share);
   lab.q_min.array() += safety.range_margin_rad;
   lab.q_max.array() -= safety.range_margin_rad;
   return lab;
 }
-
-}  // namespace
 
 Follower::Follower(const TrackerLimits& limits, std::size_t log_length)
     : tracker_(limits), log_(log_length) {}

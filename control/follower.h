@@ -18,6 +18,9 @@
 
 namespace sidestep::control {
 
+/// What commands keep to under the profile kLab: the settings' shares of the robot's limits.
+TrackerLimits LabLimits(const robot::RobotModel& robot, const SafetySettings& safety);
+
 /// Owns the tick of a robot: what stands between a plan, which comes when it comes, and a motor,
 /// which must be told something every millisecond. The simulated arm and a driver of a real one
 /// call the same Tick. Unless its profile is off, a supervisor (control/supervisor.h) looks at

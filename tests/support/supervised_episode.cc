@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "sidestep/bench/resolve.h"
+#include "sidestep/bench/validation/random_obstacle.h"
 #include "sidestep/record/questions.h"
 #include "sidestep/sim/simulation.h"
 
@@ -15,55 +16,12 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kMoving_rad_s = 1e-3;
-constexpr double kNever = 1e9;
 constexpr double kHorizons = 3;   // who waits for a box to pass needs longer than two
 constexpr double kGivesUp_s = 5;  // who has not moved for so long
 
-// What a box may do at most, and at least.
-struct Range {
-  double least_m_s, most_m_s, most_m_s2;
-};
-Range RangeOf(Envelope envelope) {
-  return envelope == Envelope::kWithin ? Range{0.1, 0.48, 1.9} : Range{0.1, 1.5, 10};
-}
-
-// Comes from all sides, through where the arm works.
-scenarios::Motion RandomMotion(const Range& range, RandomStream& random) {
-  const double side_rad = random.Uniform(-2.6, 2.6);
-  const double height_m = random.Uniform(0.2, 0.9);
-  const Vector3d start_m(1.2 * std::cos(side_rad), 1.2 * std::sin(side_rad), height_m);
-  const Vector3d through_m(random.Uniform(0.1, 0.6), random.Uniform(-0.6, 0.4), height_m);
-  const Vector3d direction = (through_m - start_m).normalized();
-  const double speed_m_s = random.Uniform(range.least_m_s, range.most_m_s);
-  switch (random.Bits() % 3) {
-    case 0:
-      return scenarios::LinearMotion{start_m, direction, speed_m_s, kNever, 0};
-    case 1:
-      return scenarios::AcceleratedMotion{start_m,
-                                          direction,
-                                          speed_m_s,
-                                          random.Uniform(-range.most_m_s2, range.most_m_s2),
-                                          random.Uniform(0, 5),
-                                          range.most_m_s,
-                                          kNever,
-                                          0};
-    default: {
-      const double least_m = speed_m_s * speed_m_s / range.most_m_s2;
-      const double radius_m = std::max(least_m, random.Uniform(0.2, 0.8));
-      return scenarios::CircleMotion{through_m + Vector3d(radius_m, 0, 0),
-                                     radius_m,
-                                     random.Uniform(-1.5, 1.5),
-                                     random.Bits() % 2 == 0,
-                                     speed_m_s,
-                                     kNever,
-                                     0};
-    }
-  }
-}
-
-bool BeginsFarFromTheArm(const scenarios::MovingObstacle& box) {
-  const Vector3d p_W = PoseAt(box, EpisodeTime(0)).translation();
-  return (p_W - Vector3d(0, -0.3, 0.5)).norm() > 0.75;
+bench::ObstacleRange RangeOf(Envelope envelope) {
+  return envelope == Envelope::kWithin ? bench::ObstacleRange{0.1, 0.48, 1.9}
+                                       : bench::ObstacleRange{0.1, 1.5, 10};
 }
 
 void Describe(const scenarios::Motion& motion, SupervisedEpisode& episode) {
@@ -116,10 +74,7 @@ SupervisedEpisodes::SupervisedEpisodes(const std::string& source_dir, Envelope e
 scenarios::Scenario SupervisedEpisodes::Make(std::uint64_t seed) const {
   RandomStream random(seed, "supervised episodes");
   scenarios::Scenario scenario = scenario_;
-  scenarios::MovingObstacle& box = scenario.moving_obstacles.front();
-  do {
-    box.motion = RandomMotion(RangeOf(envelope_), random);
-  } while (!BeginsFarFromTheArm(box));
+  bench::SetRandomMotion(RangeOf(envelope_), random, scenario);
   return scenario;
 }
 

@@ -1,0 +1,56 @@
+#include "sidestep/bench/validation/faults.h"
+
+#include <stdexcept>
+
+namespace sidestep::bench {
+namespace {
+
+const ValidationFault kFaults[] = {
+    {.name = "none"},
+    {.name = "no_scans",
+     .sensor = {.blind_from_s = 2, .blind_for_s = 1e9},
+     .expected = "perception_stale hold"},
+    {.name = "obstacle_unseen", .sensor = {.lost_from_s = 2}, .expected = "obstacle_lost hold"},
+    {.name = "future_stamps",
+     .sensor = {.ahead_from_s = 2, .ahead_s = 0.3},
+     .expected = "time_stamps hold|perception_stale hold"},
+    {.name = "lost_in_a_row",
+     .on_the_wire = "{kind: lose_commands, at_s: 2, count: 10}",
+     .expected = "link hold",
+     .may_go_on = true},
+    {.name = "lost_too_many",
+     .on_the_wire = "{kind: lose_commands, at_s: 2, count: 25}",
+     .expected = "communication_constraints_violation"},
+    {.name = "user_stop",
+     .on_the_wire = "{kind: user_stop, at_s: 2, for_s: 0.5}",
+     .expected = "user stop|user_stop|UserStopped|user stopped"},
+    {.name = "guiding",
+     .on_the_wire = "{kind: guiding, at_s: 2, for_s: 0.5}",
+     .expected = "guiding"},
+    {.name = "reflex",
+     .on_the_wire = "{kind: error, at_s: 2, name: cartesian_reflex}",
+     .expected = "cartesian_reflex"},
+    {.name = "cut_link", .on_the_wire = "{kind: cut_link, at_s: 2}", .expected = "connection"},
+    {.name = "pushed",
+     .on_the_wire = "{kind: external_torque, at_s: 2, for_s: 1, joint: 2, rate_n_m_s: 40}",
+     .expected = "external_torque brake"},
+    {.name = "blocked_joint",
+     .on_the_wire = "{kind: blocked_joint, at_s: 2, for_s: 5, joint: 1}",
+     .expected = "tracking brake|external_torque brake"},
+    {.name = "tracking_offset",
+     .on_the_wire = "{kind: tracking_offset, at_s: 2, for_s: 5, joint: 4, offset_rad: 0.05}",
+     .expected = "tracking brake|external_torque brake|joint_reflex|joint_velocity_violation"},
+};
+
+}  // namespace
+
+std::span<const ValidationFault> ValidationFaults() { return kFaults; }
+
+const ValidationFault& ValidationFaultOf(const std::string& name) {
+  for (const ValidationFault& fault : kFaults) {
+    if (name == fault.name) return fault;
+  }
+  throw std::invalid_argument("no fault '" + name + "'");
+}
+
+}  // namespace sidestep::bench

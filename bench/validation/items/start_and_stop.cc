@@ -1,0 +1,67 @@
+// A motion begins where the robot means to be, at rest, and ends at rest.
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "sidestep/bench/validation/support.h"
+
+namespace sidestep::bench {
+namespace {
+
+constexpr double kMost_rad = 1e-6, kMost_rad_s = 1e-4, kMost_rad_s2 = 1e-2;
+
+double ShareOf(const ControlSample& tick) {
+  return std::max(tick.v_command.cwiseAbs().maxCoeff() / kMost_rad_s,
+                  tick.a_command.cwiseAbs().maxCoeff() / kMost_rad_s2);
+}
+
+Facts Measure(const ValidationRun& run) {
+  const record::Recording& recording = run.result.recording;
+  if (recording.control.empty()) return {};
+  const ControlSample& first = recording.control.front();
+  const double off_rad = (first.q_command - run.scenario.q_start).cwiseAbs().maxCoeff();
+  Facts facts = {{"start_share", std::max(off_rad / kMost_rad, ShareOf(first))}};
+  // Others end in the middle of a motion, because their time is up.
+  const Outcome outcome = run.result.outcome;
+  if (outcome == Outcome::kGoal ||
+      (outcome == Outcome::kUnjudged && Ending(recording.metrics) == Outcome::kGoal)) {
+    facts["end_share"] = ShareOf(recording.control.back());
+  }
+  return facts;
+}
+
+ItemFinding Judge(const Evidence& evidence) {
+  const auto is_whole = [](const StudyRow& row) {
+    return IsWithinEnvelope(row) && row.metrics.count("end_share") > 0;
+  };
+  const std::vector<Told> starts = LargestFirst(evidence, "start_share", IsWithinEnvelope);
+  const std::vector<Told> ends = LargestFirst(evidence, "end_share", is_whole);
+  if (starts.empty()) return NothingRun("no episode was run");
+  ItemFinding finding;
+  const bool passes = starts.front().value < 1 && (ends.empty() || ends.front().value < 1);
+  finding.verdict = passes ? ItemVerdict::kPass : ItemVerdict::kFail;
+  finding.evidence =
+      fmt::format("of what is allowed, at most: {:.3g} at the beginning of {} episodes",
+                  starts.front().value, starts.size());
+  if (!ends.empty()) {
+    finding.evidence +=
+        fmt::format(", {:.3g} half a second after the goal in {}", ends.front().value, ends.size());
+  }
+  const std::vector<Told>& worse = ends.empty() || starts.front().value > 1 ? starts : ends;
+  finding.worst = WorstOf(worse, 1, "{:.3g} of what is allowed");
+  return finding;
+}
+
+}  // namespace
+
+ValidationItem StartAndStopItem() {
+  return {4,
+          "start and stop",
+          "1e-6 rad from where the robot means to be, 1e-4 rad/s and 1e-2 rad/s^2 at the first "
+          "and the last sample",
+          "Franka's documentation: recommended conditions",
+          Measure,
+          Judge};
+}
+
+}  // namespace sidestep::bench

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <functional>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include "sidestep/bench/validation/item.h"
+#include "sidestep/control/tracker.h"
+
+// What items have in common.
+namespace sidestep::bench {
+
+/// The name of a row's case.
+std::string NameOf(const StudyRow& row);
+
+/// Whether a row's obstacles keep to what is declared, nothing fails, and the arm is supervised.
+bool IsWithinEnvelope(const StudyRow& row);
+bool IsOfGroup(const StudyRow& row, const char* group);
+
+using RowFilter = std::function<bool(const StudyRow&)>;
+
+/// A row and what it tells of one fact.
+struct Told {
+  const StudyRow* row;
+  double value;
+};
+/// Of the rows that have it, those with the largest value first.
+std::vector<Told> LargestFirst(const Evidence& evidence, const std::string& fact,
+                               const RowFilter& filter);
+/// The sum over those rows.
+double SumOf(const std::vector<Told>& told);
+
+/// The first few that are beyond a limit, or the first one. @param format of fmt, of the value.
+std::vector<NamedCase> WorstOf(const std::vector<Told>& told, double limit, const char* format);
+
+/// What an item says where no row tells anything.
+ItemFinding NothingRun(const std::string& why);
+
+/// Whether the arm is told to move at a tick.
+bool IsToldToMove(const ControlSample& tick);
+/// The latest tick at or before `t`, or the first one; null: there is none.
+const ControlSample* TickAt(const record::Recording& recording, EpisodeTime t);
+
+/// The tracker that an arm has under the profile `lab`.
+control::JerkLimitedTracker LabTracker(const robot::RobotModel& robot);
+
+/// The stop that could begin at a tick.
+struct StopFrom {
+  Eigen::VectorXd q_end;
+  double seconds = 0;
+  bool keeps_to_limits = true;
+};
+StopFrom StopOf(const control::JerkLimitedTracker& tracker, const ControlSample& tick);
+
+/// The greatest way of a part of the arm between two configurations [m], straight.
+double GreatestWay(const robot::RobotModel& robot, const Eigen::VectorXd& q_from,
+                   const Eigen::VectorXd& q_to);
+
+/// From the arm (its capsules, but for those that never move) to the moving obstacles (the boxes
+/// around them, as placed) [m]; infinite without obstacles.
+double DistanceToObstacles(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
+                           const Eigen::VectorXd& q, const std::vector<Pose>& X_WO);
+
+}  // namespace sidestep::bench

@@ -1,0 +1,256 @@
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sidestep/bench/result_file.h"
+#include "sidestep/bench/task_pool.h"
+#include "sidestep/bench/validation/matrix.h"
+#include "sidestep/bench/validation/perception.h"
+#include "sidestep/bench/validation/report.h"
+#include "sidestep/bench/validation/validation.h"
+#include "sidestep/cli/command.h"
+#include "sidestep/cli/console.h"
+#include "sidestep/cli/number_range.h"
+#include "sidestep/cli/option_lists.h"
+#include "sidestep/cli/out_folder.h"
+#include "sidestep/cli/provenance.h"
+#include "sidestep/cli/run_folder.h"
+#include "sidestep/cli/run_summary.h"
+#include "sidestep/cli/served_worlds.h"
+#include "sidestep/cli/shell_quote.h"
+#include "sidestep/cli/stop_signals.h"
+#include "sidestep/cli/versions.h"
+#include "sidestep/cli/wiring.h"
+#include "sidestep/core/atomic_file.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/core/number_text.h"
+#include "sidestep/planner/registry.h"
+
+namespace sidestep::cli {
+namespace {
+
+constexpr int kMaxJobs = 256;
+constexpr const char* kFiles[] = {"validation.md", "validation.json", "validation.csv"};
+
+struct ValidateOptions {
+  std::string planner, scenario, out, only;
+  std::vector<std::string> settings;
+  int seeds = 2, jobs = 0;
+  int soak = 0;  // episodes; 0: none
+  std::string command;
+};
+
+bench::ValidationSubject SubjectOf(const ValidateOptions& options, const DataPaths& paths) {
+  CheckWords("PLANNER", {options.planner}, planner::PlannerNames());
+  Overrides overrides;
+  overrides.settings = ParseSettings(options.settings);
+  if (!overrides.settings.emplace("planner.name", options.planner).second) {
+    throw InputError("--set planner.name", "is given by PLANNER as well");
+  }
+  Problem problem = LoadProblem(options.scenario, overrides, paths);
+  bench::ValidationSubject subject = {std::move(problem.scenario), std::move(problem.robot)};
+  bench::CheckSubject(subject);
+  return subject;
+}
+
+class Validation {
+ public:
+  Validation(const ValidateOptions& options, DataPaths paths)
+      : options_(options),
+        paths_(std::move(paths)),
+        subject_(SubjectOf(options, paths_)),
+        cases_(CasesOf()) {
+    worlds_.simulated = SimulatedWorlds(paths_);
+    worlds_.wired = [this](const std::string& faults, double lost_share) {
+      return ServedWorlds(paths_, faults, lost_share);
+    };
+  }
+
+  int Run() const { return options_.only.empty() ? RunAll() : RunOne(); }
+
+ private:
+  bool HasServer() const { return subject_.robot.name() == "panda"; }
+
+  std::vector<bench::ValidationCase> CasesOf() const {
+    std::vector<bench::ValidationCase> cases =
+        bench::ValidationMatrix(subject_.scenario, options_.seeds, HasServer());
+    for (bench::ValidationCase& one : bench::SoakCases(subject_.scenario, options_.soak)) {
+      cases.push_back(std::move(one));
+    }
+    return cases;
+  }
+
+  std::string ReplayOf(const bench::ValidationCase& one) const {
+    std::string command = "sidestep validate " + ShellQuoted(options_.planner) + " --scenario " +
+                          ShellQuoted(options_.scenario);
+    for (const std::string& setting : options_.settings)
+      command += " --set " + ShellQuoted(setting);
+    if (one.group == bench::validation_group::kSoak) {
+      command += " --soak " + std::to_string(one.draw);
+    } else if (one.draw > 2) {
+      command += " --seeds " + std::to_string(one.draw);
+    }
+    const std::string name = NameOf(one);
+    return command + " --only " + ShellQuoted(name) + " --out " + ShellQuoted("out/again/" + name);
+  }
+
+  // One episode, with its trace.
+  int RunOne() const {
+    const auto one = std::find_if(cases_.begin(), cases_.end(),
+                                  [&](const auto& each) { return NameOf(each) == options_.only; });
+    if (one == cases_.end()) {
+      throw InputError("--only", "'" + options_.only +
+                                     "' is no case of this validation (validation.csv names them)");
+    }
+    const scenarios::Scenario scenario = ScenarioOf(*one, subject_);
+    const OutFolder out(Folder(), {"trace.h5", "result.json"});
+    const StopSignals signals;
+    bench::ValidationEpisode episode =
+        RunValidationCase(*one, subject_, worlds_, [&] { return signals.first(); });
+    if (episode.row.outcome == bench::kFailed) throw std::runtime_error(episode.row.error);
+    const bench::RunIdentity identity = Identify(scenario, paths_);
+    AddProvenance(identity, episode.result.recording);
+    WriteResults(episode.result, scenario, identity, VersionsIn(episode.result.recording.header),
+                 out.path());
+    PrintOutcome(episode.result, scenario);
+    for (const auto& [fact, value] : episode.row.metrics) {
+      Print("{:<28} {}\n", fact, FiniteText("{:.6g}", value));
+    }
+    Print("written          {}/result.json, {}/trace.h5\n", out.path(), out.path());
+    return 0;
+  }
+
+  int RunAll() const {
+    const OutFolder out(Folder(), {std::begin(kFiles), std::end(kFiles)});
+    const StopSignals signals;
+    const std::vector<bench::StudyRow> rows = RunCases(signals);
+    const bool is_whole = rows.size() == cases_.size();
+    const std::vector<bench::JudgedItem> items =
+        bench::JudgeItems({subject_.scenario, rows}, is_whole);
+    const bench::ValidationTitle title = TitleOf();
+    WriteFile(out.path() + "/validation.md", ValidationPage(title, items, rows));
+    WriteFile(out.path() + "/validation.json", ValidationJson(title, items, rows));
+    WriteFile(out.path() + "/validation.csv", bench::ValidationCsv(rows));
+    Tell(items);
+    Print("written          {0}/validation.md, {0}/validation.json, {0}/validation.csv\n",
+          out.path());
+    FinishOutput();
+    if (!is_whole) {
+      PrintError("validate: {} of {} episodes: it was stopped by {}\n", rows.size(), cases_.size(),
+                 signals.first());
+    }
+    return HasFailed(items) || !is_whole ? 1 : 0;
+  }
+
+  std::string Folder() const {
+    return options_.out.empty() ? "out/" + subject_.scenario.name + "/validate_" + options_.planner
+                                : options_.out;
+  }
+
+  bench::ValidationTitle TitleOf() const {
+    scenarios::Scenario scenario = subject_.scenario;
+    bench::SetLikelySensor(scenario);
+    const bool is_other = scenario.sensor.name != subject_.scenario.sensor.name;
+    return {options_.planner,
+            scenario.name,
+            scenario.sensor.name +
+                (is_other ? ", because no camera tells the " + subject_.scenario.sensor.name +
+                                " that the scenario has"
+                          : ""),
+            options_.command,
+            static_cast<int>(cases_.size()),
+            VersionsIn(Provenance(Identify(subject_.scenario, paths_)))};
+  }
+
+  // In the order of the cases; those that were not run to their end are left out.
+  std::vector<bench::StudyRow> RunCases(const StopSignals& signals) const {
+    const int count = static_cast<int>(cases_.size());
+    std::vector<std::optional<bench::StudyRow>> done(cases_.size());
+    std::mutex telling;
+    int num_done = 0, told = 0;
+    bench::RunTasks(count, options_.jobs, [&](int i) {
+      if (signals.count() > 0) return;
+      const bench::ValidationCase& one = cases_[static_cast<std::size_t>(i)];
+      bench::StudyRow row =
+          RunValidationCase(one, subject_, worlds_, [&] { return signals.first(); }).row;
+      if (signals.count() > 0) return;
+      row.command = ReplayOf(one);
+      done[static_cast<std::size_t>(i)] = std::move(row);
+      const std::lock_guard lock(telling);
+      const int percent = 100 * ++num_done / count;
+      if (percent / 10 == told / 10) return;
+      told = percent;
+      PrintError("{} of {} episodes\n", num_done, count);
+    });
+    std::vector<bench::StudyRow> rows;
+    for (std::optional<bench::StudyRow>& row : done) {
+      if (row) rows.push_back(std::move(*row));
+    }
+    return rows;
+  }
+
+  void Tell(const std::vector<bench::JudgedItem>& items) const {
+    for (const auto& [item, finding] : items) {
+      Print("{:>2}  {:<8} {}: {}\n", item.number, ToString(finding.verdict), item.name,
+            finding.evidence);
+    }
+    Print("\n{}\n\nfrom the first packet to full speed:\n", VerdictLine(items));
+    int step = 0;
+    for (const char* const rung : bench::BringUpLadder()) Print("{:>3}. {}\n", ++step, rung);
+    Print("\n{}\n\n", bench::NotCertified());
+  }
+
+  const ValidateOptions& options_;
+  DataPaths paths_;
+  bench::ValidationSubject subject_;
+  std::vector<bench::ValidationCase> cases_;
+  bench::ValidationWorlds worlds_;
+};
+
+}  // namespace
+
+void AddValidateCommand(CommandLine& line) {
+  auto options = std::make_shared<ValidateOptions>();
+  CLI::App* const validate =
+      line.app.add_subcommand("validate",
+                              "Whether a planner may be tried on a robot: many episodes, "
+                              "obstacles, speeds, faults; a report "
+                              "with pass and fail");
+  validate->add_option("PLANNER", options->planner, "One of `sidestep list planners`")->required();
+  validate
+      ->add_option("--scenario", options->scenario,
+                   "A name (see `sidestep list`) or a path; supervised by `lab`")
+      ->required();
+  validate
+      ->add_option("--set", options->settings, "KEY=VALUE of the scenario, as for `sidestep run`")
+      ->allow_extra_args(false);
+  validate
+      ->add_option("--seeds", options->seeds,
+                   "How often each combination is run, its obstacle coming from elsewhere [2]")
+      ->check(NumberFrom(1, 1000));
+  validate
+      ->add_option("--soak", options->soak, "Also so many episodes at random, an hour or so [2000]")
+      ->expected(0, 1)
+      ->default_str("2000")
+      ->check(NumberFrom(1, 1000000));
+  validate->add_option("--only", options->only,
+                       "Run this case of the report alone, and keep its trace.h5 and result.json");
+  validate->add_option("-j,--jobs", options->jobs, "Episodes at a time [the number of cores]")
+      ->check(NumberFrom(1, kMaxJobs));
+  validate->add_option("--out", options->out,
+                       "Folder for the report [out/SCENARIO/validate_PLANNER]");
+  validate->footer(
+      "Exit codes: 0 nothing fails (what was not run is told), 1 an item fails or the work was\n"
+      "interrupted, 2 bad input. docs/validation.md says what is required, and why.");
+  validate->callback([&line, options] {
+    options->command = line.text;
+    if (options->jobs == 0) options->jobs = std::min(bench::NumProcessors(), kMaxJobs);
+    line.exit_code = Validation(*options, FindDataPaths()).Run();
+  });
+}
+
+}  // namespace sidestep::cli
