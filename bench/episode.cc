@@ -26,6 +26,7 @@
 #include "sidestep/core/goal.h"
 #include "sidestep/planner/replanner.h"
 #include "sidestep/robot/robot_error.h"
+#include "sidestep/robot/tolerance_scale.h"
 #include "sidestep/sdf/map/object_field.h"
 #include "sidestep/sdf/world_model.h"
 
@@ -98,7 +99,7 @@ class Loop {
             scenario, scenario.epsilon_m + robot.largest_sphere_radius_m(), world))),
         horizon_s_(HorizonOf(scenario, *planner_)),
         replanner_(*planner_, {horizon_s_, scenario.step_s, scenario.q_goal}),
-        goal_(scenario.q_goal, scenario.dwell_s),
+        goal_(scenario.q_goal, scenario.dwell_s, robot::ToleranceScale(planner_->robot())),
         latency_(scenario),
         clock_(options.clock == EpisodeClock::kWall ? MakeWallClock() : MakeVirtualClock()),
         is_real_time_(options.clock != EpisodeClock::kVirtual),

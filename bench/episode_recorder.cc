@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "sidestep/robot/tolerance_scale.h"
 #include "sidestep/scenarios/yaml_text.h"
 
 namespace sidestep::bench {
@@ -60,6 +61,7 @@ record::Recording BeginRecording(const scenarios::Scenario& scenario,
   recording.q_start = scenario.q_start;
   recording.q_goal = scenario.q_goal;
   recording.dwell_s = scenario.dwell_s;
+  recording.tolerance_scale = robot::ToleranceScale(robot);
   recording.robot_limits = LimitsOf(robot);
   recording.limits =
       LimitsOf(robot, scenario.velocity_limits ? scenario.velocity_scale : record::kNoLimit,

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sidestep/robot/tolerance_scale.h"
+
 namespace sidestep::control {
 namespace {
 
@@ -19,8 +21,9 @@ TrackerLimits LimitsUnder(const SafetySettings& safety, const robot::RobotModel&
 
 TrackerLimits LabLimits(const robot::RobotModel& robot, const SafetySettings& safety) {
   TrackerLimits lab = TrackerLimits::Of(robot, safety.v_share, safety.a_share, safety.jerk_share);
-  lab.q_min.array() += safety.range_margin_rad;
-  lab.q_max.array() -= safety.range_margin_rad;
+  const Eigen::VectorXd margin = safety.range_margin_rad * robot::ToleranceScale(robot);
+  lab.q_min += margin;
+  lab.q_max -= margin;
   return lab;
 }
 

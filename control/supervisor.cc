@@ -8,6 +8,7 @@
 
 #include "sidestep/control/joint_motion.h"
 #include "sidestep/control/segment_box.h"
+#include "sidestep/robot/tolerance_scale.h"
 
 namespace sidestep::control {
 namespace {
@@ -19,8 +20,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 1e-6;
 
 // NaN if anything is.
-double LargestDifference(const JointVector& a, const JointVector& b) {
-  return (a - b).cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
+double Largest(const JointVector& a, const JointVector& b, const JointVector& scale) {
+  return (a - b).cwiseAbs().cwiseQuotient(scale).maxCoeff<Eigen::PropagateNaN>();
 }
 
 bool IsMoving(const JointPoint& point) { return !point.v.isZero(0) || !point.a.isZero(0); }
@@ -54,6 +55,7 @@ Supervisor::Supervisor(const robot::RobotModel& robot, const JerkLimitedTracker&
       tracker_(tracker),
       settings_(settings),
       capsules_(robot),
+      scale_(robot::ToleranceScale(robot)),
       findings_(kLogLength) {
   if (robot.capsules().empty()) {
     throw std::invalid_argument("Supervisor: the robot has no capsules");
@@ -66,9 +68,9 @@ bool Supervisor::Refuses(const JointPoint& before, bool begins, const JointPoint
   // robot.
   const auto shares = [&](const JointPoint& reference, bool with_a) {
     return std::array<double, 3>{
-        LargestDifference(before.q, reference.q) / settings_.splice_q_rad,
-        LargestDifference(before.v, reference.v) / settings_.splice_v_rad_s,
-        with_a ? LargestDifference(before.a, reference.a) / settings_.splice_a_rad_s2 : 0};
+        Largest(before.q, reference.q, scale_) / settings_.splice_q_rad,
+        Largest(before.v, reference.v, scale_) / settings_.splice_v_rad_s,
+        with_a ? Largest(before.a, reference.a, scale_) / settings_.splice_a_rad_s2 : 0};
   };
   const auto largest = [](const std::array<double, 3>& of) {
     return *std::max_element(of.begin(), of.end());
@@ -138,7 +140,7 @@ void Supervisor::JudgePerception(const ObstacleReport* report) {
 }
 
 void Supervisor::JudgeRobot(const Measured& measured) {
-  const double off_rad = LargestDifference(measured.q, measured.commanded.q);
+  const double off_rad = Largest(measured.q, measured.commanded.q, scale_);
   Find(SafetyCheck::kTracking, Reaction::kBrake, !(off_rad <= settings_.tracking_rad), off_rad,
        settings_.tracking_rad);
   double pushed = 0;

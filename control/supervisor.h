@@ -91,6 +91,7 @@ class Supervisor {
   const JerkLimitedTracker tracker_;
   const SafetySettings settings_;
   const ArmCapsules capsules_;
+  const JointVector scale_;  // of tolerances
 
   Latest<ObstacleReport> reports_;
   RingLog<Finding> findings_;

@@ -7,17 +7,24 @@ constexpr double kTimeEpsilon_s = 1e-9;  // times are sums of ticks, rounded
 
 }  // namespace
 
-bool IsAtGoal(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const Eigen::VectorXd& q_goal) {
-  return (q - q_goal).cwiseAbs().maxCoeff() <= kGoalTolerance_rad &&
-         v.cwiseAbs().maxCoeff() <= kGoalSpeed_rad_s;
+double LargestDifference(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
+                         const Eigen::VectorXd& scale) {
+  if (scale.size() == 0) return (a - b).cwiseAbs().maxCoeff();
+  return (a - b).cwiseAbs().cwiseQuotient(scale).maxCoeff();
 }
 
-GoalWatch::GoalWatch(const Eigen::VectorXd& q_goal, double dwell_s)
-    : q_goal_(q_goal), dwell_s_(dwell_s) {}
+bool IsAtGoal(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const Eigen::VectorXd& q_goal,
+              const Eigen::VectorXd& scale) {
+  return LargestDifference(q, q_goal, scale) <= kGoalTolerance_rad &&
+         LargestDifference(v, Eigen::VectorXd::Zero(v.size()), scale) <= kGoalSpeed_rad_s;
+}
+
+GoalWatch::GoalWatch(const Eigen::VectorXd& q_goal, double dwell_s, const Eigen::VectorXd& scale)
+    : q_goal_(q_goal), dwell_s_(dwell_s), scale_(scale) {}
 
 void GoalWatch::Observe(EpisodeTime t, const Eigen::VectorXd& q, const Eigen::VectorXd& v) {
   if (dwelt_) return;
-  if (!IsAtGoal(q, v, q_goal_)) {
+  if (!IsAtGoal(q, v, q_goal_, scale_)) {
     arrived_.reset();
     return;
   }

@@ -7,7 +7,13 @@
 
 namespace sidestep {
 
-/// An arm is at its goal when no joint is further from it than this [rad, or m of a slider] ...
+/// The largest difference of two configurations, or of two velocities, joint by joint [rad, rad/s].
+/// @param scale here and below what one rad is for each joint, in its own unit
+///   (robot/tolerance_scale.h); empty where all turn.
+double LargestDifference(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
+                         const Eigen::VectorXd& scale);
+
+/// An arm is at its goal when no joint is further from it than this ...
 inline constexpr double kGoalTolerance_rad = 0.02;
 /// ... and a plan leads to the goal when it ends this near: half as far, so that an arm that lags
 /// its plan a little still arrives ...
@@ -16,14 +22,15 @@ inline constexpr double kPlannedGoalTolerance_rad = 0.01;
 inline constexpr double kGoalSpeed_rad_s = 0.05;
 
 /// Whether an arm that moves by (q, v) is at `q_goal`. All of shape n.
-bool IsAtGoal(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const Eigen::VectorXd& q_goal);
+bool IsAtGoal(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const Eigen::VectorXd& q_goal,
+              const Eigen::VectorXd& scale = {});
 
 /// What it is to reach a goal, for whoever has to decide it: to be there without a break for as
 /// long as was asked for. Shown a motion state by state, in order.
 class GoalWatch {
  public:
   /// @param dwell_s how long to stay, >= 0; with 0 the first state at the goal will do.
-  GoalWatch(const Eigen::VectorXd& q_goal, double dwell_s);
+  GoalWatch(const Eigen::VectorXd& q_goal, double dwell_s, const Eigen::VectorXd& scale = {});
 
   void Observe(EpisodeTime t, const Eigen::VectorXd& q, const Eigen::VectorXd& v);
 
@@ -38,6 +45,7 @@ class GoalWatch {
  private:
   Eigen::VectorXd q_goal_;
   double dwell_s_;
+  Eigen::VectorXd scale_;
   std::optional<EpisodeTime> arrived_, dwelt_;
 };
 

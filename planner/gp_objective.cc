@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sidestep/robot/tolerance_scale.h"
+
 namespace sidestep::planner {
 namespace {
 
@@ -26,11 +28,12 @@ SoftLimits MakeSoftLimits(const robot::RobotModel& robot, const Eigen::VectorXd&
                           const Eigen::VectorXd& q_goal, const LimitWeights& weights,
                           double velocity_scale, double acceleration_scale) {
   const int n = robot.num_joints();
+  const Eigen::VectorXd margin = kPositionMargin_rad * robot::ToleranceScale(robot);
   SoftLimits soft{weights, Eigen::VectorXd(2 * n), Eigen::VectorXd(2 * n), Eigen::VectorXd(n)};
   for (int i = 0; i < n; ++i) {
     const robot::JointLimits& limits = robot.limits()[static_cast<std::size_t>(i)];
-    soft.lower(i) = std::min({limits.q_min + kPositionMargin_rad, q_start(i), q_goal(i)});
-    soft.upper(i) = std::max({limits.q_max - kPositionMargin_rad, q_start(i), q_goal(i)});
+    soft.lower(i) = std::min({limits.q_min + margin(i), q_start(i), q_goal(i)});
+    soft.upper(i) = std::max({limits.q_max - margin(i), q_start(i), q_goal(i)});
     soft.upper(n + i) = velocity_scale * limits.v_max;
     soft.lower(n + i) = -soft.upper(n + i);
     soft.a_max(i) = acceleration_scale * limits.a_max;

@@ -9,6 +9,7 @@
 #include "sidestep/planner/braking.h"
 #include "sidestep/planner/clearance.h"
 #include "sidestep/planner/free_goal.h"
+#include "sidestep/robot/tolerance_scale.h"
 
 namespace sidestep::planner {
 namespace {
@@ -69,8 +70,6 @@ bool IsAllThatWasAsked(PlanStatus status) {
   return status == PlanStatus::kSolved || status == PlanStatus::kNotConverged;
 }
 
-bool IsMoving(const JointState& state) { return state.v.cwiseAbs().maxCoeff() > kStill_rad_s; }
-
 // One cycle at work: the task and what is derived from it.
 class CycleWork {
  public:
@@ -83,12 +82,14 @@ class CycleWork {
         t_effect_(task.t_effect),
         field_(*task.field),
         running_(task.running),
+        scale_(robot::ToleranceScale(planner.robot())),
         is_off_plan_(IsOffPlan()),
         expected_(Expect()) {}
 
   CycleResult Run() const;
 
  private:
+  bool IsMoving() const;
   bool IsOffPlan() const;
   // How the robot will be at t_effect: as its plan says, if it follows one.
   TrajectoryPoint Expect() const;
@@ -111,6 +112,7 @@ class CycleWork {
   const EpisodeTime now_, t_effect_;
   const sdf::DistanceField& field_;
   const std::optional<TimedPlan>& running_;
+  const Eigen::VectorXd scale_;  // of tolerances
   const bool is_off_plan_;
   const TrajectoryPoint expected_;  // at t_effect
 };
@@ -222,8 +224,7 @@ CycleResult CycleWork::Run() const {
 TrajectoryPoint CycleWork::Expect() const {
   const std::vector<robot::JointLimits>& limits = planner_.robot().limits();
   if (!running_)
-    return IsMoving(task_.state) ? Stop(limits, task_.state, t_effect_ - now_)
-                                 : RestAt(task_.state.q);
+    return IsMoving() ? Stop(limits, task_.state, t_effect_ - now_) : RestAt(task_.state.q);
   if (is_off_plan_) return MoveOn(limits, task_.state, t_effect_ - now_);
   return Sample(running_->trajectory, t_effect_ - running_->start);
 }
@@ -231,7 +232,7 @@ TrajectoryPoint CycleWork::Expect() const {
 std::optional<PlanRequest> CycleWork::MakeRequest() const {
   const PlanRequest anew = NewHorizon(t_effect_, expected_.q, expected_.v);
   if (!running_) {
-    if (IsMoving(task_.state)) return anew;
+    if (IsMoving()) return anew;
     PlanRequest request = NewHorizon(now_, expected_.q, expected_.v);
     request.num_fixed = CountFixed(now_, options_.step_s, t_effect_);
     return num_states_ - request.num_fixed >= kMinFreeStates ? request : anew;
@@ -253,7 +254,8 @@ std::optional<PlanRequest> CycleWork::MakeRequest() const {
   const bool is_free =
       !MeasureClearance(planner_.robot(), field_, running, running_->start, t_effect_, judged_to)
            .first_contact;
-  const double goal_error_rad = (running.q.rightCols<1>() - options_.q_goal).cwiseAbs().maxCoeff();
+  const double goal_error_rad =
+      LargestDifference(running.q.rightCols<1>(), options_.q_goal, scale_);
   if (is_free && goal_error_rad <= kPlannedGoalTolerance_rad) return std::nullopt;
   // Where it waits for a goal that is blocked, it rests.
   const EpisodeTime horizon_end = t_effect_ + HorizonOffset(options_.horizon_s);
@@ -284,8 +286,9 @@ bool CycleWork::RestsAtGoal(const TimedPlan& plan, EpisodeTime from, EpisodeTime
   }
   return std::all_of(offsets.begin(), offsets.end(), [&](HorizonOffset offset) {
     const TrajectoryPoint point = Sample(motion, offset);
-    return (point.q - options_.q_goal).cwiseAbs().maxCoeff() <= kPlannedGoalTolerance_rad &&
-           point.v.cwiseAbs().maxCoeff() <= kGoalSpeed_rad_s;
+    return LargestDifference(point.q, options_.q_goal, scale_) <= kPlannedGoalTolerance_rad &&
+           LargestDifference(point.v, Eigen::VectorXd::Zero(point.v.size()), scale_) <=
+               kGoalSpeed_rad_s;
   });
 }
 
@@ -307,10 +310,15 @@ TimedPlan CycleWork::Brake() const {
           t_effect_};
 }
 
+bool CycleWork::IsMoving() const {
+  const Eigen::VectorXd& v = task_.state.v;
+  return LargestDifference(v, Eigen::VectorXd::Zero(v.size()), scale_) > kStill_rad_s;
+}
+
 bool CycleWork::IsOffPlan() const {
   if (!running_ || now_ < running_->start) return false;  // what leads up to it is not known here
   const TrajectoryPoint planned = Sample(running_->trajectory, now_ - running_->start);
-  return (task_.state.q - planned.q).cwiseAbs().maxCoeff() > kOffPlan_rad;
+  return LargestDifference(task_.state.q, planned.q, scale_) > kOffPlan_rad;
 }
 
 }  // namespace

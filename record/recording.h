@@ -49,7 +49,9 @@ struct Recording {
   std::vector<std::string> obstacles;  ///< mocap bodies, as in the MJCF
   Eigen::VectorXd q_start;
   Eigen::VectorXd q_goal;
-  double dwell_s = 0;         ///< how long the arm had to stay at its goal
+  double dwell_s = 0;  ///< how long the arm had to stay at its goal
+  /// What one rad of a tolerance is for each joint, in its own unit; empty where all turn.
+  Eigen::VectorXd tolerance_scale;
   MotionLimits robot_limits;  ///< the robot's own
   /// What the motion was to keep to, as asked for: the robot's times the scenario's scales.
   MotionLimits limits;

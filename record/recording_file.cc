@@ -65,10 +65,17 @@ void ForEachLimit(Limits& recording, const Do& act) {
   }
 }
 
+Eigen::VectorXd ScaleOf(const Recording& recording) {
+  const auto n = static_cast<Eigen::Index>(recording.joints.size());
+  return recording.tolerance_scale.size() > 0 ? recording.tolerance_scale
+                                              : Eigen::VectorXd::Ones(n);
+}
+
 void CheckRecording(const Recording& recording) {
   const auto n = static_cast<Eigen::Index>(recording.joints.size());
   Require(recording.q_start.size() == n, "q_start needs one number a joint");
   Require(recording.q_goal.size() == n, "q_goal needs one number a joint");
+  Require(ScaleOf(recording).size() == n, "tolerance_scale needs one number a joint, or none");
   ForEachLimit(recording, [&](const std::string& path, const Eigen::VectorXd& limit, const char*) {
     Require(limit.size() == n, path + " needs one number a joint");
   });
@@ -189,6 +196,7 @@ void WriteProblem(Hdf5ImageWriter& file, const Recording& recording) {
   write_joints("q_start", recording.q_start, "rad");
   write_joints("q_goal", recording.q_goal, "rad");
   file.Write("dwell", Doubles{{}, {recording.dwell_s}}, "s");
+  write_joints("tolerance_scale", ScaleOf(recording), "");
   for (const LimitGroup& group : kLimitGroups) file.MakeGroup(group.name);
   ForEachLimit(recording, write_joints);
   file.MakeGroup("tool");
@@ -445,6 +453,10 @@ void ReadProblem(const Hdf5ImageReader& file, Recording* recording) {
   recording->q_goal = read_joints("q_goal");
   recording->dwell_s = file.ReadDoubles("dwell", {}).values.front();
   if (!(recording->dwell_s >= 0)) file.Fail("dwell", "must be >= 0");
+  recording->tolerance_scale = read_joints("tolerance_scale");
+  if (!(recording->tolerance_scale.array() > 0).all()) {
+    file.Fail("tolerance_scale", "must be > 0");
+  }
   ForEachLimit(*recording, [&](const std::string& path, Eigen::VectorXd& limit, const char*) {
     limit = read_joints(path);
   });

@@ -14,7 +14,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kGpStep = 0.1;  // s, the paper's
 
 GoalWatch WatchGoal(const record::Recording& recording) {
-  GoalWatch goal(recording.q_goal, recording.dwell_s);
+  GoalWatch goal(recording.q_goal, recording.dwell_s, recording.tolerance_scale);
   for (const ControlSample& tick : recording.control) goal.Observe(tick.t, tick.q, tick.v);
   return goal;
 }
@@ -33,7 +33,7 @@ double TimeToDwell(const record::Recording& recording) {
 
 double GoalError(const record::Recording& recording) {
   if (recording.control.empty()) return kNaN;
-  return (recording.control.back().q - recording.q_goal).cwiseAbs().maxCoeff();
+  return LargestDifference(recording.control.back().q, recording.q_goal, recording.tolerance_scale);
 }
 
 double GpCostOfMotion(const record::Recording& recording) {

@@ -33,6 +33,14 @@ struct Stay {
 };
 std::ostream& operator<<(std::ostream& stream, const Stay& stay) { return stream << stay.name; }
 
+TEST(Goal, IsJudgedOfASlideByMetres) {
+  const Eigen::Vector2d scale(1, 0.25);
+  EXPECT_TRUE(IsAtGoal(kGoal + Eigen::Vector2d(0.0199, 0.00499), kRest, kGoal, scale));
+  EXPECT_FALSE(IsAtGoal(kGoal + Eigen::Vector2d(0, 0.00501), kRest, kGoal, scale));
+  EXPECT_FALSE(IsAtGoal(kGoal, Eigen::Vector2d(0, 0.0126), kGoal, scale));
+  EXPECT_EQ(LargestDifference(kGoal + Eigen::Vector2d(0.125, -0.5), kGoal, scale), 2);
+}
+
 class GoalWatchOf : public ::testing::TestWithParam<Stay> {};
 
 TEST_P(GoalWatchOf, TellsTheStayThatCounted) {

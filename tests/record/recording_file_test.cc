@@ -165,6 +165,7 @@ void ExpectEqual(const Recording& a, const Recording& b) {
   EXPECT_EQ(a.q_start, b.q_start);
   EXPECT_EQ(a.q_goal, b.q_goal);
   EXPECT_EQ(a.dwell_s, b.dwell_s);
+  EXPECT_EQ(a.tolerance_scale, b.tolerance_scale);
   ExpectEqual(a.robot_limits, b.robot_limits);
   ExpectEqual(a.limits, b.limits);
   EXPECT_EQ(a.tool_a_max, b.tool_a_max);

@@ -24,6 +24,7 @@ record::Recording FullRecording(int num_control) {
   recording.q_start = Eigen::Vector2d(0.1, -0.2);
   recording.q_goal = Eigen::Vector2d(1.0 / 3, std::nextafter(1.0, 2.0));
   recording.dwell_s = 0.25;
+  recording.tolerance_scale = Eigen::Vector2d(1, 0.25);
   recording.robot_limits = {Eigen::Vector2d(2.175, 2.61), Eigen::Vector2d(15, 7.5),
                             Eigen::Vector2d(7501, 3750), Eigen::Vector2d(1001, 901)};
   recording.tool_a_max = 13;
