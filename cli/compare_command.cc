@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "sidestep/bench/metrics/robot_limit_metrics.h"
 #include "sidestep/bench/result_file.h"
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
@@ -142,7 +143,7 @@ int Compare(const std::vector<std::string>& folders) {
     heads.push_back(ShortName(differences[i], differences));
     shown.push_back(ShortValues(results, differences[i]));
   }
-  heads.push_back("outcome");
+  heads.insert(heads.end(), {"outcome", "would trip"});
   units.resize(heads.size());
   const std::size_t num_words = heads.size();
   for (const char* const head : {"contact", "clearance", "goal", "GP cost", "jerk RMS", "cycle"}) {
@@ -158,6 +159,7 @@ int Compare(const std::vector<std::string>& folders) {
     Line& line = lines.emplace_back(Line{folders[n], result.knowledge});
     for (const std::vector<std::string>& values : shown) line.push_back(OneLine(values[n]));
     line.push_back(bench::Tell(result.outcome, result.touched, bench::Ending(result.metrics)));
+    line.push_back(bench::TellTrips(result.metrics));
     line.push_back(Number(result, "first_contact_s", 1, "{:.2f}"));
     line.push_back(Number(result, "min_clearance_m", 1e3, "{:.0f}"));
     line.push_back(Number(result, "time_to_goal_s", 1, "{:.2f}"));

@@ -40,16 +40,14 @@ void PrintPlanningTime(const bench::EpisodeResult& result, const scenarios::Scen
 }
 
 void PrintTrips(const std::map<std::string, double>& metrics) {
-  std::string shares, tripped;
+  std::string shares;
   for (const bench::TripMetric& metric : bench::kTripMetrics) {
     shares += (shares.empty() ? "" : ", ") + std::string(metric.words) + " " +
               FiniteText("{:.2f}", metrics.at(metric.name), "not known");
   }
-  for (const bench::TripMetric& metric : bench::TrippedBy(metrics)) {
-    tripped += (tripped.empty() ? "" : ", ") + std::string(metric.words);
-  }
+  const std::string trips = bench::TellTrips(metrics);
   Print("would it trip    {}; of the robot's limits: {}\n",
-        tripped.empty() ? "no" : "yes, " + tripped, shares);
+        bench::TrippedBy(metrics).empty() ? trips : "yes, " + trips, shares);
 }
 
 }  // namespace

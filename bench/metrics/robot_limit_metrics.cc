@@ -93,4 +93,12 @@ std::vector<TripMetric> TrippedBy(const std::map<std::string, double>& metrics) 
   return tripped;
 }
 
+std::string TellTrips(const std::map<std::string, double>& metrics) {
+  std::string words;
+  for (const TripMetric& metric : TrippedBy(metrics)) {
+    words += (words.empty() ? "" : ", ") + std::string(metric.words);
+  }
+  return words.empty() ? "no" : words;
+}
+
 }  // namespace sidestep::bench

@@ -39,5 +39,7 @@ inline constexpr TripMetric kTripMetrics[] = {
 
 /// Those of them that reach 1.
 std::vector<TripMetric> TrippedBy(const std::map<std::string, double>& metrics);
+/// In words: "velocity, tool reflex"; "no" if there are none.
+std::string TellTrips(const std::map<std::string, double>& metrics);
 
 }  // namespace sidestep::bench

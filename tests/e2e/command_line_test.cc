@@ -641,6 +641,36 @@ TEST(Run, TellsWhatWasTouchedAndTheDwellThatWasAskedFor) {
   EXPECT_THAT(run("0").out, ::testing::Not(HasSubstr("dwell")));
 }
 
+TEST(Compare, TellsWhichRunsWouldHaveTripped) {
+  const TemporaryFolder folder;
+  const auto run = [&](const std::string& name, const std::string& horizon_s) {
+    const std::string out = folder.path() / name;
+    EXPECT_EQ(Sidestep({"run", "hsr_walkway", "--set", "planner.name=straight_line", "--set",
+                        "horizon.duration_s=" + horizon_s, "--out", out})
+                  .exit_code,
+              0);
+    return out;
+  };
+  const auto trips = [](const std::string& out) {
+    return nlohmann::json::parse(TextOf(out + "/result.json")).at("would_trip");
+  };
+  const std::string quick = run("quick", "1"), slow = run("slow", "20");
+  EXPECT_EQ(trips(quick), nlohmann::json::array({"acceleration_use", "commanded_torque_rate_use",
+                                                 "tool_acceleration_use", "tool_reflex_use"}));
+  EXPECT_EQ(trips(slow), nlohmann::json::array());
+  std::istringstream lines(Sidestep({"compare", quick, slow}).out);
+  std::string heads, units, of_quick, of_slow;
+  std::getline(lines, heads);
+  std::getline(lines, units);
+  std::getline(lines, of_quick);
+  std::getline(lines, of_slow);
+  const std::size_t column = heads.find("would trip");
+  ASSERT_NE(column, std::string::npos) << heads;
+  EXPECT_THAT(of_quick.substr(column),
+              StartsWith("acceleration, torque rate, tool acceleration, tool reflex "));
+  EXPECT_THAT(of_slow.substr(column), StartsWith("no "));
+}
+
 TEST(Compare, TellsRunsApartByFolderAndByWhatDiffers) {
   const TemporaryFolder folder;
   std::vector<std::string> compare = {"compare"};
