@@ -77,17 +77,23 @@ class SeededPlanner::Search {
     return SolveWithLimits(max_iterations);
   }
 
+  Candidate LeaveAsItIs(const Trajectory& motion) {
+    optimizer_->Restart(motion);
+    return SolveWithLimits(1, 0);
+  }
+
  private:
   int MostTrialIterations() const {
     return std::min(kTrialIterations, planner_.gp().max_iterations);
   }
 
   // Soft limits give way where much is at stake: those of a free plan that exceeds them get
-  // stiffer.
+  // stiffer. One that is not finished may yet come to keep them by itself.
   Candidate SolveWithLimits(int max_iterations) {
     Candidate best = SolveWithLimits(1, max_iterations);
     for (const double stiffness : kStiffer) {
-      if (!best.verdict.is_free() || best.verdict.keeps_limits || IsSpent()) break;
+      const bool is_finished = best.answer.converged && best.verdict.is_free();
+      if (!is_finished || best.verdict.keeps_limits || IsSpent()) break;
       Candidate stiffer = SolveWithLimits(stiffness, MostTrialIterations());
       if (!EndsAt(*stiffer.answer.trajectory, request_.q_goal)) break;  // there is too little time
       if (planner_.IsBetter(stiffer.verdict, best.verdict)) best = std::move(stiffer);
@@ -169,6 +175,11 @@ PlanAnswer SeededPlanner::TryAll(const PlanRequest& request, PlanJudge& judge) c
   Candidate best =
       taken_up ? *std::move(taken_up)
                : search.Solve(seeds.Make(0), request.initial ? Stages::kWithLimits : Stages::kBoth);
+  // What runs is not given up for what exceeds a limit or touches something, if it does neither.
+  if (request.initial && !taken_up && !(best.verdict.is_free() && best.verdict.keeps_limits)) {
+    Candidate running = search.LeaveAsItIs(MakeWarmStart(request));
+    if (IsBetter(running.verdict, best.verdict)) best = std::move(running);
+  }
   if (!best.verdict.is_free() && LeadsToGoal(request)) {
     if (std::optional<PlanRequest> nearby = WithFreeGoal(request)) {
       nearby->budget = request.budget.WhatIsLeft(search.spent());
