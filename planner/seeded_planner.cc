@@ -59,7 +59,7 @@ class SeededPlanner::Search {
     if (!progress.cut_short || progress.next_seed == 0 || !progress.best) return std::nullopt;
     if (request_.initial && judge_.Judge(MakeWarmStart(request_)).is_free()) return std::nullopt;
     optimizer_->Restart(MakeContinuation(request_, *progress.best));
-    return SolveWithLimits(MostTrialIterations());
+    return SolveWithStiffening(MostTrialIterations());
   }
 
   /// With `to_beat` it is a trial, for one of many seeds: few iterations, and it gives up after the
@@ -67,14 +67,15 @@ class SeededPlanner::Search {
   Candidate Solve(const Trajectory& guess, Stages stages, const Clearance* to_beat = nullptr) {
     optimizer_->Restart(guess);
     const int max_iterations = to_beat ? MostTrialIterations() : planner_.gp().max_iterations;
-    if (stages != Stages::kWithLimits) Improve(max_iterations, kColdTolerance);
+    if (stages == Stages::kWithLimits) return SolveWithLimits(1, max_iterations);
+    Improve(max_iterations, kColdTolerance);
     if (to_beat) {
       PlanAnswer answer;
       answer.trajectory = optimizer_->GetTrajectory();
       Candidate first = Judged(std::move(answer));
       if (!first.verdict.is_free() && !IsSafer(first.verdict.clearance, *to_beat)) return first;
     }
-    return SolveWithLimits(max_iterations);
+    return SolveWithStiffening(max_iterations);
   }
 
   Candidate LeaveAsItIs(const Trajectory& motion) {
@@ -89,7 +90,7 @@ class SeededPlanner::Search {
 
   // Soft limits give way where much is at stake: those of a free plan that exceeds them get
   // stiffer. One that is not finished may yet come to keep them by itself.
-  Candidate SolveWithLimits(int max_iterations) {
+  Candidate SolveWithStiffening(int max_iterations) {
     Candidate best = SolveWithLimits(1, max_iterations);
     for (const double stiffness : kStiffer) {
       const bool is_finished = best.answer.converged && best.verdict.is_free();
