@@ -20,6 +20,7 @@ Verdict PlanJudge::Judge(const Trajectory& trajectory) {
   verdict.clearance = MeasureClearance(robot_, *request_.field, trajectory, request_.start,
                                        at(request_.num_fixed - 1), at(request_.num_states - 1));
   verdict.limit_use = MeasureLimitUse(robot_, trajectory, request_.num_fixed - 1);
+  verdict.limit_share = LargestShare(verdict.limit_use, settings_);
   verdict.keeps_limits = KeepsLimits(verdict.limit_use, settings_);
   judged_.push_back({trajectory, verdict});
   return verdict;

@@ -16,7 +16,8 @@ namespace sidestep::planner {
 struct Verdict {
   Clearance clearance;        ///< in the request's field
   LimitUse limit_use;         ///< of the robot's own limits
-  bool keeps_limits = false;  ///< those that the settings ask for
+  double limit_share = 0;     ///< the largest, of those that the settings ask for
+  bool keeps_limits = false;  ///< all of these
 
   bool is_free() const { return !clearance.first_contact; }
 };

@@ -73,6 +73,7 @@ PlanResult Planner::Plan(const PlanRequest& request) const {
     result.reason = error.what();
     return result;
   }
+  result.converged = answer.converged;
   result.iterations = answer.iterations;
   result.spent = std::max(answer.spent, answer.iterations);
   result.progress = std::move(answer.progress);
@@ -97,6 +98,7 @@ PlanResult Planner::Plan(const PlanRequest& request) const {
   result.cost = answer.cost;
   result.clearance = verdict.clearance;
   result.limit_use = verdict.limit_use;
+  result.limit_share = verdict.limit_share;
   return result;
 }
 

@@ -51,12 +51,15 @@ struct PlanResult {
   PlanStatus status = PlanStatus::kFailed;
   std::optional<Trajectory> trajectory;  ///< finite, on the request's grid; none: see `reason`
   std::string reason;                    ///< why there is none, or why it ends short of the goal
+  bool converged = false;  ///< whether the planner stopped by itself, whatever the status
   int iterations = 0;
   int spent = 0;            ///< of the budget's iterations
   SearchProgress progress;  ///< for the next request
   PlanCost cost;
   Clearance clearance;  ///< of the free part, in the field; without a trajectory, none measured
   LimitUse limit_use;   ///< of the free part, of the robot's own limits
+  /// Of the free part: the largest share of a limit that the settings ask to keep, or 0.
+  double limit_share = 0;
 };
 
 /// What a planner can do beyond what every planner promises; tests hold it to what it declares.

@@ -1,5 +1,6 @@
 #include "sidestep/planner/planner_settings.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -23,12 +24,18 @@ void CheckPlannerSettings(const PlannerSettings& settings) {
   Require(IsFraction(settings.acceleration_scale), "acceleration_scale must be in (0, 1]");
 }
 
+double LargestShare(const LimitUse& use, const PlannerSettings& settings) {
+  double share = 0;
+  if (settings.position_limits) share = std::max(share, use.position);
+  if (settings.velocity_limits) share = std::max(share, use.velocity / settings.velocity_scale);
+  if (settings.acceleration_limits) {
+    share = std::max(share, use.acceleration / settings.acceleration_scale);
+  }
+  return share;
+}
+
 bool KeepsLimits(const LimitUse& use, const PlannerSettings& settings) {
-  constexpr double kWhole = 1 + kLimitTolerance;
-  return (!settings.position_limits || use.position <= kWhole) &&
-         (!settings.velocity_limits || use.velocity <= kWhole * settings.velocity_scale) &&
-         (!settings.acceleration_limits ||
-          use.acceleration <= kWhole * settings.acceleration_scale);
+  return LargestShare(use, settings) <= 1 + kLimitTolerance;
 }
 
 bool KeepsWholeLimits(const LimitUse& use, const PlannerSettings& settings) {

@@ -20,6 +20,10 @@ struct PlannerSettings {
 /// @throws std::invalid_argument, naming the setting, for one out of range.
 void CheckPlannerSettings(const PlannerSettings& settings);
 
+/// The largest share that a motion uses of the limits that `settings` ask for: the scaled ones of
+/// the kinds that are switched on.
+double LargestShare(const LimitUse& use, const PlannerSettings& settings);
+
 /// Whether a motion that uses so much of a robot's limits keeps those that `settings` ask for: the
 /// scaled ones of the kinds that are switched on, but for a thousandth.
 bool KeepsLimits(const LimitUse& use, const PlannerSettings& settings);

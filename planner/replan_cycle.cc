@@ -19,6 +19,7 @@ constexpr int kMinFreeStates = 3;        // fewer leave nothing to choose
 constexpr double kOffPlan_rad = 0.1;     // a robot this far from its plan does not follow it
 constexpr double kStill_rad_s = 0.01;    // what is measured of a robot at rest is noise below this
 constexpr double kArrivesLate_s = 0.5;   // an arm lags its plan by less, or does not arrive by it
+constexpr double kMuchTooFast = 1.05;    // of a limit: a share that is worth to come later for
 constexpr double kRecordStep_s = 0.1;    // between the recorded positions of a predicted object
 constexpr double kTimeEpsilon_s = 1e-9;  // support times are sums of steps, rounded
 
@@ -173,21 +174,24 @@ CycleResult CycleWork::Run() const {
       clearance = is_new ? result.clearance : measure(present, EndOf(present));
     };
     const bool goes_on = request->initial.has_value();
-    show(plan(*request, goes_on ? &CycleSearches::going_on : &CycleSearches::anew,
-              goes_on && task_.searches.anew.cut_short ? task_.budget.HalfOfWhatIsLeft(spent)
-                                                       : task_.budget.WhatIsLeft(spent)),
-         request->start);
-    const bool wants_time = record.status == ToString(PlanStatus::kOverLimits) ||
-                            record.status == ToString(PlanStatus::kShortOfGoal);
+    PlanResult result =
+        plan(*request, goes_on ? &CycleSearches::going_on : &CycleSearches::anew,
+             goes_on && task_.searches.anew.cut_short ? task_.budget.HalfOfWhatIsLeft(spent)
+                                                      : task_.budget.WhatIsLeft(spent));
+    // What is not finished may keep its limits once it is.
+    const bool wants_time = result.status == PlanStatus::kShortOfGoal ||
+                            (result.status == PlanStatus::kOverLimits && result.converged &&
+                             result.limit_share > kMuchTooFast);
+    show(std::move(result), request->start);
     if (wants_time && running_ && request->start < t_effect_) {
-      std::optional<PlanResult> result = plan_anew();
-      if (result && IsAllThatWasAsked(result->status)) show(*std::move(result), t_effect_);
+      std::optional<PlanResult> anew = plan_anew();
+      if (anew && IsAllThatWasAsked(anew->status)) show(*std::move(anew), t_effect_);
     }
     if (clearance.first_contact && running_) {
       if (request->start < t_effect_) {
-        std::optional<PlanResult> result = plan_anew();
-        if (result && result->trajectory && IsSafer(result->clearance, clearance)) {
-          show(*std::move(result), t_effect_);
+        std::optional<PlanResult> anew = plan_anew();
+        if (anew && anew->trajectory && IsSafer(anew->clearance, clearance)) {
+          show(*std::move(anew), t_effect_);
         }
       }
       TimedPlan brake = Brake();

@@ -59,7 +59,7 @@ class SeededPlanner::Search {
     if (!progress.cut_short || progress.next_seed == 0 || !progress.best) return std::nullopt;
     if (request_.initial && judge_.Judge(MakeWarmStart(request_)).is_free()) return std::nullopt;
     optimizer_->Restart(MakeContinuation(request_, *progress.best));
-    return SolveWithLimits(MostTrialIterations());
+    return SolveWithStiffening(MostTrialIterations());
   }
 
   /// With `to_beat` it is a trial, for one of many seeds: few iterations, and it gives up after the
@@ -67,14 +67,20 @@ class SeededPlanner::Search {
   Candidate Solve(const Trajectory& guess, Stages stages, const Clearance* to_beat = nullptr) {
     optimizer_->Restart(guess);
     const int max_iterations = to_beat ? MostTrialIterations() : planner_.gp().max_iterations;
-    if (stages != Stages::kWithLimits) Improve(max_iterations, kColdTolerance);
+    if (stages == Stages::kWithLimits) return SolveWithLimits(1, max_iterations);
+    Improve(max_iterations, kColdTolerance);
     if (to_beat) {
       PlanAnswer answer;
       answer.trajectory = optimizer_->GetTrajectory();
       Candidate first = Judged(std::move(answer));
       if (!first.verdict.is_free() && !IsSafer(first.verdict.clearance, *to_beat)) return first;
     }
-    return SolveWithLimits(max_iterations);
+    return SolveWithStiffening(max_iterations);
+  }
+
+  Candidate LeaveAsItIs(const Trajectory& motion) {
+    optimizer_->Restart(motion);
+    return SolveWithLimits(1, 0);
   }
 
  private:
@@ -83,11 +89,12 @@ class SeededPlanner::Search {
   }
 
   // Soft limits give way where much is at stake: those of a free plan that exceeds them get
-  // stiffer.
-  Candidate SolveWithLimits(int max_iterations) {
+  // stiffer. One that is not finished may yet come to keep them by itself.
+  Candidate SolveWithStiffening(int max_iterations) {
     Candidate best = SolveWithLimits(1, max_iterations);
     for (const double stiffness : kStiffer) {
-      if (!best.verdict.is_free() || best.verdict.keeps_limits || IsSpent()) break;
+      const bool is_finished = best.answer.converged && best.verdict.is_free();
+      if (!is_finished || best.verdict.keeps_limits || IsSpent()) break;
       Candidate stiffer = SolveWithLimits(stiffness, MostTrialIterations());
       if (!EndsAt(*stiffer.answer.trajectory, request_.q_goal)) break;  // there is too little time
       if (planner_.IsBetter(stiffer.verdict, best.verdict)) best = std::move(stiffer);
@@ -169,6 +176,11 @@ PlanAnswer SeededPlanner::TryAll(const PlanRequest& request, PlanJudge& judge) c
   Candidate best =
       taken_up ? *std::move(taken_up)
                : search.Solve(seeds.Make(0), request.initial ? Stages::kWithLimits : Stages::kBoth);
+  // What runs is not given up for what exceeds a limit or touches something, if it does neither.
+  if (request.initial && !taken_up && !(best.verdict.is_free() && best.verdict.keeps_limits)) {
+    Candidate running = search.LeaveAsItIs(MakeWarmStart(request));
+    if (IsBetter(running.verdict, best.verdict)) best = std::move(running);
+  }
   if (!best.verdict.is_free() && LeadsToGoal(request)) {
     if (std::optional<PlanRequest> nearby = WithFreeGoal(request)) {
       nearby->budget = request.budget.WhatIsLeft(search.spent());

@@ -16,12 +16,12 @@ namespace sidestep::planner {
 ///
 /// A cold start is solved in two stages, first without joint limits and then with them from there:
 /// stiff limits from the beginning keep the solver on the wrong side of obstacles. A warm start is
-/// solved with limits at once. A plan is judged by its clearance, not by its cost. If a cold one is
-/// not free within the limits, or a warm one not free, direct motions with other timings are tried
-/// as seeds until one is, and the best counts. Where all of them touch something, a cold start is
-/// followed by detours (planner/seeds.h). Such seeds get few iterations, and no second stage if the
-/// first leaves them less safe than the best so far. What is free and exceeds a limit is solved
-/// again with stiffer limits.
+/// solved with limits at once, and left as it is where that spoils it. A plan is judged by its
+/// clearance, not by its cost. If a cold one is not free within the limits, or a warm one not free,
+/// direct motions with other timings are tried as seeds until one is, and the best counts. Where
+/// all of them touch something, a cold start is followed by detours (planner/seeds.h). Such seeds
+/// get few iterations, and no second stage if the first leaves them less safe than the best so far.
+/// What they and a cold start find free and over a limit is solved again with stiffer limits.
 ///
 /// Where the goal is blocked when the horizon ends, no plan to it can be free: then the plan is one
 /// to the nearest place that is (planner/free_goal.h), found in the same way.

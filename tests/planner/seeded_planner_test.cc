@@ -170,6 +170,7 @@ TEST(ASearchThatWasCutShort, IsForgottenOnceThePlanThatRunsIsFree) {
   const IdlePlanner planner;
   const BallField nothing({100, 0, 0}, {0, 0, 0}, 0.1);
   PlanRequest request = Request(nothing);
+  request.num_states = 41;  // time enough to keep the limits
   request.initial = MakeDirectMotion(request, Timing::kLeaveLate);
   request.progress = {true, 2, TimedPlan{MakeDirectMotion(request, Timing::kArriveEarly), {}}};
   const PlanResult result = planner.Plan(request);
