@@ -26,7 +26,9 @@ constexpr const char* kForSpeed[] = {"cross", "head_on", "circle", "reverse"};
 class Matrix {
  public:
   Matrix(const scenarios::Scenario& scenario, int draws, bool with_wire)
-      : scenario_(scenario), draws_(draws), with_wire_(with_wire) {}
+      : scenario_(scenario), draws_(draws), with_wire_(with_wire) {
+    SetLikelySensor(scenario_);
+  }
 
   std::vector<ValidationCase> Make() {
     AddBehaviours();
@@ -135,7 +137,7 @@ class Matrix {
     if (with_wire_) Add(one, 1);
   }
 
-  const scenarios::Scenario& scenario_;
+  scenarios::Scenario scenario_;
   const int draws_;
   const bool with_wire_;
   std::vector<ValidationCase> cases_;

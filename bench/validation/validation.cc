@@ -15,8 +15,7 @@
 namespace sidestep::bench {
 namespace {
 
-constexpr double kHorizons = 3;   // who waits for an obstacle to pass needs longer than two
-constexpr double kGivesUp_s = 4;  // who has not moved for so long
+constexpr double kGivesUp_s = 3;  // who has not moved for so long
 constexpr double kMoving_rad_s = 1e-3;
 constexpr int kGuesses = 20;                       // of the search for a free motion
 constexpr const char* kReferencePlanner = "gpmp";  // that searches
@@ -56,7 +55,7 @@ WorldFactory WorldOf(const ValidationCase& one, const ValidationSubject& subject
   return WithFaults(make, faults, SeedOf(one, subject));
 }
 
-// Whether one who knows the future finds a way; NaN: it was not looked for.
+// Whether one who knows the future finds a way.
 bool HasFreePath(scenarios::Scenario scenario, const robot::RobotModel& robot) {
   scenario.planner = kReferencePlanner;
   scenario.planner_parameters.clear();
@@ -127,7 +126,6 @@ ValidationEpisode RunValidationCase(const ValidationCase& one, const ValidationS
     double moved_s = 0;
     bool gave_up = false;
     EpisodeOptions options;
-    options.horizons = kHorizons;
     options.why_stop = [&]() -> std::string {
       const JointState state = arm->Read();
       if (state.v.norm() > kMoving_rad_s) moved_s = state.t.seconds();
