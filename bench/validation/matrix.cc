@@ -13,7 +13,7 @@ namespace {
 using namespace validation_group;
 
 // Of the declared speed. What is measured of the greatest one errs, so it is not all of it.
-constexpr double kSlow = 0.2, kMiddle = 0.5, kQuick = 0.9;
+constexpr double kSlow = 0.2, kMiddle = 0.5, kQuick = 0.8;
 constexpr double kWithin[] = {kSlow, kMiddle, kQuick};
 constexpr double kBeyond[] = {1.6, 2.8, 4};
 

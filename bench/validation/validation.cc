@@ -73,9 +73,10 @@ void CheckSubject(const ValidationSubject& subject) {
   const scenarios::Scenario& scenario = subject.scenario;
   if (scenario.safety.profile != scenarios::SafetyProfile::kLab) {
     throw scenarios::WrongValue(scenario, "safety.profile",
-                                "must be lab to be validated, with what obstacles are declared to "
-                                "do, is " +
-                                    ToString(scenario.safety.profile));
+                                "must be lab to be validated, is " +
+                                    ToString(scenario.safety.profile) +
+                                    "; safety: {profile: lab, obstacle_speed_m_s: ..., "
+                                    "obstacle_acceleration_m_s2: ...} declares what obstacles do");
   }
   if (subject.robot.capsules().empty()) {
     throw scenarios::WrongValue(scenario, "robot.model",
@@ -133,10 +134,14 @@ ValidationEpisode RunValidationCase(const ValidationCase& one, const ValidationS
       return gave_up ? kGaveUp : why_stop();
     };
     episode.result = RunEpisode(scenario, subject.robot, make_world, options);
+    if (gave_up) {  // as if its time had been up
+      episode.result.outcome = Judge(episode.result.recording, /*reached=*/false);
+      episode.result.reason = kGaveUp;
+    }
     StudyRow& row = episode.row;
     row.factors = FactorsOf(one);
-    row.outcome = gave_up ? ToString(Outcome::kTimeout) : ToString(episode.result.outcome);
-    row.error = gave_up ? kGaveUp : episode.result.reason;
+    row.outcome = ToString(episode.result.outcome);
+    row.error = episode.result.reason;
     row.metrics = MeasureFacts({one, scenario, subject.robot, episode.result});
     if (IsSearched(one)) {
       row.metrics["free_path"] = HasFreePath(scenario, subject.robot) ? 1 : 0;

@@ -127,7 +127,7 @@ INSTANTIATE_TEST_SUITE_P(
                 {"hsr_walkway.yaml:", "safety.profile: must be lab to be validated"}},
         Mistake{
             "ValidateWithoutCapsules",
-            {"validate", "gpmp", "--scenario", "wam_single_pillar", "--set", "safety.profile=lab"},
+            {"validate", "gpmp", "--scenario", "wam_single_pillar", "--set", "safety={profile: lab}"},
             {"robot.model: wam has no capsules to be supervised by"}},
         Mistake{"ValidateNoSeeds",
                 {"validate", "gpmp", "--scenario", "hardware_single_table", "--seeds", "0"},
