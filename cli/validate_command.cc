@@ -57,6 +57,10 @@ bench::ValidationSubject SubjectOf(const ValidateOptions& options, const DataPat
   CheckWords("PLANNER", {options.planner}, planner::PlannerNames());
   Overrides overrides;
   overrides.settings = ParseSettings(options.settings);
+  const std::string file = FindScenario(options.scenario, paths);
+  if (scenarios::LoadScenario(file, overrides.settings).robot.empty()) {
+    throw InputError("--scenario", "'" + options.scenario + "' has no robot");
+  }
   if (!overrides.settings.emplace("planner.name", options.planner).second) {
     throw InputError("--set planner.name", "is given by PLANNER as well");
   }

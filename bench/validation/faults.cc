@@ -33,13 +33,13 @@ const ValidationFault kFaults[] = {
     {.name = "cut_link", .on_the_wire = "{kind: cut_link, at_s: 2}", .expected = "connection"},
     {.name = "pushed",
      .on_the_wire = "{kind: external_torque, at_s: 2, for_s: 1, joint: 7, rate_n_m_s: 30}",
-     .expected = "external_torque brake"},
+     .expected = "external_torque brake|joint_reflex|cartesian_reflex"},
     {.name = "blocked_joint",
      .on_the_wire = "{kind: blocked_joint, at_s: 2, for_s: 5, joint: 1}",
-     .expected = "tracking brake|external_torque brake"},
+     .expected = "tracking brake|external_torque brake|joint_reflex|cartesian_reflex"},
     {.name = "tracking_offset",
      .on_the_wire = "{kind: tracking_offset, at_s: 2, for_s: 5, joint: 4, offset_rad: 0.05}",
-     .expected = "tracking brake|external_torque brake"},
+     .expected = "tracking brake|external_torque brake|joint_reflex|cartesian_reflex"},
 };
 
 }  // namespace
