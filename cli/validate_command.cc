@@ -1,3 +1,5 @@
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <memory>
 #include <mutex>
@@ -44,10 +46,21 @@ struct ValidateOptions {
   std::string command;
 };
 
+// The most that the program has had so far; its unit does not matter.
+double MostMemory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss);
+}
+
 bench::ValidationSubject SubjectOf(const ValidateOptions& options, const DataPaths& paths) {
   CheckWords("PLANNER", {options.planner}, planner::PlannerNames());
   Overrides overrides;
   overrides.settings = ParseSettings(options.settings);
+  const std::string file = FindScenario(options.scenario, paths);
+  if (scenarios::LoadScenario(file, overrides.settings).robot.empty()) {
+    throw InputError("--scenario", "'" + options.scenario + "' has no robot");
+  }
   if (!overrides.settings.emplace("planner.name", options.planner).second) {
     throw InputError("--set planner.name", "is given by PLANNER as well");
   }
@@ -127,10 +140,11 @@ class Validation {
   int RunAll() const {
     const OutFolder out(Folder(), {std::begin(kFiles), std::end(kFiles)});
     const StopSignals signals;
-    const std::vector<bench::StudyRow> rows = RunCases(signals);
+    std::optional<double> memory_growth;
+    const std::vector<bench::StudyRow> rows = RunCases(signals, memory_growth);
     const bool is_whole = rows.size() == cases_.size();
     const std::vector<bench::JudgedItem> items =
-        bench::JudgeItems({subject_.scenario, rows}, is_whole);
+        bench::JudgeItems({subject_.scenario, rows, memory_growth}, is_whole);
     const bench::ValidationTitle title = TitleOf();
     WriteFile(out.path() + "/validation.md", ValidationPage(title, items, rows));
     WriteFile(out.path() + "/validation.json", ValidationJson(title, items, rows));
@@ -167,8 +181,11 @@ class Validation {
   }
 
   // In the order of the cases; those that were not run to their end are left out.
-  std::vector<bench::StudyRow> RunCases(const StopSignals& signals) const {
+  // @param memory_growth of the last nine tenths, if there is a soak.
+  std::vector<bench::StudyRow> RunCases(const StopSignals& signals,
+                                        std::optional<double>& memory_growth) const {
     const int count = static_cast<int>(cases_.size());
+    double memory_at_first = 0;
     std::vector<std::optional<bench::StudyRow>> done(cases_.size());
     std::mutex telling;
     int num_done = 0, told = 0;
@@ -182,10 +199,12 @@ class Validation {
       done[static_cast<std::size_t>(i)] = std::move(row);
       const std::lock_guard lock(telling);
       const int percent = 100 * ++num_done / count;
+      if (percent < 10) memory_at_first = MostMemory();
       if (percent / 10 == told / 10) return;
       told = percent;
       PrintError("{} of {} episodes\n", num_done, count);
     });
+    if (options_.soak > 0) memory_growth = MostMemory() / memory_at_first - 1;
     std::vector<bench::StudyRow> rows;
     for (std::optional<bench::StudyRow>& row : done) {
       if (row) rows.push_back(std::move(*row));

@@ -13,7 +13,7 @@ namespace {
 using namespace validation_group;
 
 // Of the declared speed. What is measured of the greatest one errs, so it is not all of it.
-constexpr double kSlow = 0.2, kMiddle = 0.5, kQuick = 0.9;
+constexpr double kSlow = 0.2, kMiddle = 0.5, kQuick = 0.8;
 constexpr double kWithin[] = {kSlow, kMiddle, kQuick};
 constexpr double kBeyond[] = {1.6, 2.8, 4};
 
@@ -26,7 +26,9 @@ constexpr const char* kForSpeed[] = {"cross", "head_on", "circle", "reverse"};
 class Matrix {
  public:
   Matrix(const scenarios::Scenario& scenario, int draws, bool with_wire)
-      : scenario_(scenario), draws_(draws), with_wire_(with_wire) {}
+      : scenario_(scenario), draws_(draws), with_wire_(with_wire) {
+    SetLikelySensor(scenario_);
+  }
 
   std::vector<ValidationCase> Make() {
     AddBehaviours();
@@ -135,7 +137,7 @@ class Matrix {
     if (with_wire_) Add(one, 1);
   }
 
-  const scenarios::Scenario& scenario_;
+  scenarios::Scenario scenario_;
   const int draws_;
   const bool with_wire_;
   std::vector<ValidationCase> cases_;

@@ -25,6 +25,7 @@ constexpr const char* kLadder[] = {
     "its gripper: what the camera says and what the joints say differ by at most 10 mm.",
     "Dry run: `sidestep hardware run SCENARIO --dry-run`, real perception and planning, the robot "
     "not moving.",
+    "`sidestep hardware go-to-start SCENARIO`, the stop in your hand.",
     "A tenth of the speed (planner.velocity_scale), nothing near, the stop in your hand.",
     "A virtual obstacle: `sidestep hardware run SCENARIO`, first slow and far, then near.",
     "A soft foam box on a stick at 0.1 m/s, whoever holds it further than 1.2 m from the base, the "

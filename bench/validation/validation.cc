@@ -15,8 +15,7 @@
 namespace sidestep::bench {
 namespace {
 
-constexpr double kHorizons = 3;   // who waits for an obstacle to pass needs longer than two
-constexpr double kGivesUp_s = 4;  // who has not moved for so long
+constexpr double kGivesUp_s = 3;  // who has not moved for so long
 constexpr double kMoving_rad_s = 1e-3;
 constexpr int kGuesses = 20;                       // of the search for a free motion
 constexpr const char* kReferencePlanner = "gpmp";  // that searches
@@ -56,7 +55,7 @@ WorldFactory WorldOf(const ValidationCase& one, const ValidationSubject& subject
   return WithFaults(make, faults, SeedOf(one, subject));
 }
 
-// Whether one who knows the future finds a way; NaN: it was not looked for.
+// Whether one who knows the future finds a way.
 bool HasFreePath(scenarios::Scenario scenario, const robot::RobotModel& robot) {
   scenario.planner = kReferencePlanner;
   scenario.planner_parameters.clear();
@@ -74,9 +73,10 @@ void CheckSubject(const ValidationSubject& subject) {
   const scenarios::Scenario& scenario = subject.scenario;
   if (scenario.safety.profile != scenarios::SafetyProfile::kLab) {
     throw scenarios::WrongValue(scenario, "safety.profile",
-                                "must be lab to be validated, with what obstacles are declared to "
-                                "do, is " +
-                                    ToString(scenario.safety.profile));
+                                "must be lab to be validated, is " +
+                                    ToString(scenario.safety.profile) +
+                                    "; safety: {profile: lab, obstacle_speed_m_s: ..., "
+                                    "obstacle_acceleration_m_s2: ...} declares what obstacles do");
   }
   if (subject.robot.capsules().empty()) {
     throw scenarios::WrongValue(scenario, "robot.model",
@@ -127,7 +127,6 @@ ValidationEpisode RunValidationCase(const ValidationCase& one, const ValidationS
     double moved_s = 0;
     bool gave_up = false;
     EpisodeOptions options;
-    options.horizons = kHorizons;
     options.why_stop = [&]() -> std::string {
       const JointState state = arm->Read();
       if (state.v.norm() > kMoving_rad_s) moved_s = state.t.seconds();
@@ -135,10 +134,14 @@ ValidationEpisode RunValidationCase(const ValidationCase& one, const ValidationS
       return gave_up ? kGaveUp : why_stop();
     };
     episode.result = RunEpisode(scenario, subject.robot, make_world, options);
+    if (gave_up) {  // as if its time had been up
+      episode.result.outcome = Judge(episode.result.recording, /*reached=*/false);
+      episode.result.reason = kGaveUp;
+    }
     StudyRow& row = episode.row;
     row.factors = FactorsOf(one);
-    row.outcome = gave_up ? ToString(Outcome::kTimeout) : ToString(episode.result.outcome);
-    row.error = gave_up ? kGaveUp : episode.result.reason;
+    row.outcome = ToString(episode.result.outcome);
+    row.error = episode.result.reason;
     row.metrics = MeasureFacts({one, scenario, subject.robot, episode.result});
     if (IsSearched(one)) {
       row.metrics["free_path"] = HasFreePath(scenario, subject.robot) ? 1 : 0;

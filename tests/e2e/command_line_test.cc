@@ -119,6 +119,33 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"StudyOfAnotherSpelling",
                 {"study", "hsr_walkway", "--set", "planner..qc=1"},
                 {"--set planner..qc: is no path"}},
+        Mistake{"ValidateAnUnknownPlanner",
+                {"validate", "crystal_ball", "--scenario", "hardware_single_table"},
+                {"PLANNER: must be one of", "'crystal_ball'"}},
+        Mistake{"ValidateWithoutSupervision",
+                {"validate", "gpmp", "--scenario", "hsr_walkway"},
+                {"hsr_walkway.yaml:", "safety.profile: must be lab to be validated"}},
+        Mistake{"ValidateWithoutCapsules",
+                {"validate", "gpmp", "--scenario", "wam_single_pillar", "--set",
+                 "safety={profile: lab}"},
+                {"robot.model: wam has no capsules to be supervised by"}},
+        Mistake{"ValidateWithoutARobot",
+                {"validate", "gpmp", "--scenario", "field_one_box"},
+                {"--scenario: 'field_one_box' has no robot"}},
+        Mistake{"ValidateNoSeeds",
+                {"validate", "gpmp", "--scenario", "hardware_single_table", "--seeds", "0"},
+                {"--seeds", "must be a number from 1 to 1000"}},
+        Mistake{"ValidateAnUnknownCase",
+                {"validate", "gpmp", "--scenario", "hardware_single_table", "--only", "one"},
+                {"--only: 'one' is no case of this validation"}},
+        Mistake{"ValidateTwoPlanners",
+                {"validate", "gpmp", "--scenario", "hardware_single_table", "--set",
+                 "planner.name=gpmp_fast"},
+                {"--set planner.name: is given by PLANNER as well"}},
+        Mistake{"ValidateIntoAFile",
+                {"validate", "gpmp", "--scenario", "hardware_single_table", "--out",
+                 SIDESTEP_SOURCE_DIR "/README.md"},
+                {"--out: '" SIDESTEP_SOURCE_DIR "/README.md' cannot be made a folder"}},
         Mistake{"SeedTwice", {"run", "hsr_walkway", "--seed", "3", "--seed", "4"}, {"--seed"}},
         Mistake{"SeedByFlagAndSetting",
                 {"run", "hsr_walkway", "--seed", "3", "--set", "seed=3"},
@@ -282,7 +309,7 @@ TEST(Help, NamesEveryCommandAndTheExitCodes) {
   EXPECT_EQ(finished.exit_code, 0);
   EXPECT_THAT(finished.out, HasSubstr("Exit codes"));
   for (const std::string command : {"run", "compare", "render", "list", "doctor", "reproduce",
-                                    "study", "audit", "bench", "field", "fci-server"}) {
+                                    "study", "audit", "bench", "field", "fci-server", "validate"}) {
     EXPECT_THAT(finished.out, HasSubstr("\n  " + command + " "));
     const Finished help = Sidestep({command, "--help"});
     EXPECT_EQ(help.exit_code, 0);

@@ -40,7 +40,7 @@ std::string Same(const StudyRow& row) {
 ItemFinding Judge(const Evidence& evidence) {
   std::map<std::string, double> hashes;
   for (const StudyRow& row : evidence.rows) {
-    if (IsOfGroup(row, validation_group::kRepeat)) continue;
+    if (!IsOfGroup(row, validation_group::kEnvelope)) continue;
     const auto hash = row.metrics.find("commands_hash");
     if (hash != row.metrics.end()) hashes[Same(row)] = hash->second;
   }

@@ -25,13 +25,17 @@ Facts Measure(const ValidationRun& run) {
   return facts;
 }
 
+// Where packets are lost, the robot makes up what is missing, and that is not what was sent.
+bool IsJudged(const StudyRow& row) {
+  return !IsOfGroup(row, validation_group::kPrediction) &&
+         !IsOfGroup(row, validation_group::kFault) &&
+         !row.factors.at("timing").starts_with("loss_");
+}
+
 ItemFinding Judge(const Evidence& evidence) {
   ItemFinding finding{ItemVerdict::kPass, "", {}};
-  const auto is_supervised = [](const StudyRow& row) {
-    return !IsOfGroup(row, validation_group::kPrediction);
-  };
   for (const auto& [metric, what, most] : kUses) {
-    const std::vector<Told> told = LargestFirst(evidence, metric, is_supervised);
+    const std::vector<Told> told = LargestFirst(evidence, metric, IsJudged);
     if (told.empty()) return NothingRun("the robot has no such limits");
     finding.evidence += fmt::format("{}{} {:.1f} %", finding.evidence.empty() ? "at most: " : ", ",
                                     what, 100 * told.front().value);

@@ -10,11 +10,19 @@ namespace sidestep::bench {
 namespace {
 
 constexpr double kMostPeriods = 2;
+constexpr double kStill_rad_s = 0.05;
+
+// Who is made to brake waits until he rests before he plans anew.
+bool ComesToRest(const record::Recording& recording, EpisodeTime from, EpisodeTime to) {
+  const ControlSample *const first = TickAt(recording, from), *const last = TickAt(recording, to);
+  return first != nullptr && IsToldToMove(*first) && last->v_command.norm() < kStill_rad_s;
+}
 
 Facts Measure(const ValidationRun& run) {
   const std::vector<CycleRecord>& cycles = run.result.recording.cycles;
   std::vector<double> periods;
   for (std::size_t i = 1; i < cycles.size(); ++i) {
+    if (ComesToRest(run.result.recording, cycles[i - 1].t, cycles[i].t)) continue;
     const double period_s = (cycles[i].t - cycles[i - 1].t).seconds();
     periods.push_back(period_s * run.scenario.replan_rate_hz);
   }

@@ -23,7 +23,7 @@ bool IsNominal(const StudyRow& row) {
 ItemFinding Judge(const Evidence& evidence) {
   const std::vector<Told> told = LargestFirst(evidence, "robot_errors", IsNominal);
   if (told.empty()) {
-    return NothingRun("the robot of this scenario is no panda, which the robot server simulates");
+    return NothingRun("no episode was run at the robot server, which simulates a panda alone");
   }
   ItemFinding finding;
   finding.verdict = SumOf(told) == 0 ? ItemVerdict::kPass : ItemVerdict::kFail;

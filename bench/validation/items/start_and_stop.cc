@@ -9,10 +9,23 @@ namespace sidestep::bench {
 namespace {
 
 constexpr double kMost_rad = 1e-6, kMost_rad_s = 1e-4, kMost_rad_s2 = 1e-2;
+constexpr double kSettles_s = 0.2;  // of a command after its plan
 
 double ShareOf(const ControlSample& tick) {
   return std::max(tick.v_command.cwiseAbs().maxCoeff() / kMost_rad_s,
                   tick.a_command.cwiseAbs().maxCoeff() / kMost_rad_s2);
+}
+
+// Whether its last plan was followed to its end: others end in the middle of one, because their
+// goal is reached, nearly, or their time is up.
+bool IsOver(const record::Recording& recording) {
+  const CycleRecord* last = nullptr;
+  for (const CycleRecord& cycle : recording.cycles) {
+    if (cycle.accepted) last = &cycle;
+  }
+  if (last == nullptr || !recording.safety.empty()) return false;
+  const double plan_s = last->plan.t_s(last->plan.num_states() - 1);
+  return recording.control.back().t > last->plan_start + HorizonOffset(plan_s + kSettles_s);
 }
 
 Facts Measure(const ValidationRun& run) {
@@ -21,12 +34,7 @@ Facts Measure(const ValidationRun& run) {
   const ControlSample& first = recording.control.front();
   const double off_rad = (first.q_command - run.scenario.q_start).cwiseAbs().maxCoeff();
   Facts facts = {{"start_share", std::max(off_rad / kMost_rad, ShareOf(first))}};
-  // Others end in the middle of a motion, because their time is up.
-  const Outcome outcome = run.result.outcome;
-  if (outcome == Outcome::kGoal ||
-      (outcome == Outcome::kUnjudged && Ending(recording.metrics) == Outcome::kGoal)) {
-    facts["end_share"] = ShareOf(recording.control.back());
-  }
+  if (IsOver(recording)) facts["end_share"] = ShareOf(recording.control.back());
   return facts;
 }
 
@@ -45,7 +53,7 @@ ItemFinding Judge(const Evidence& evidence) {
                   starts.front().value, starts.size());
   if (!ends.empty()) {
     finding.evidence +=
-        fmt::format(", {:.3g} half a second after the goal in {}", ends.front().value, ends.size());
+        fmt::format(", {:.3g} at the end of the last plan in {}", ends.front().value, ends.size());
   }
   const std::vector<Told>& worse = ends.empty() || starts.front().value > 1 ? starts : ends;
   finding.worst = WorstOf(worse, 1, "{:.3g} of what is allowed");
