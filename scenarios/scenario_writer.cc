@@ -187,8 +187,8 @@ std::string ToYaml(const Scenario& scenario) {
        (scenario.static_world == StaticWorld::kExact ? "exact" : "occupancy"));
   if (!scenario.static_boxes.empty()) line("static_boxes:");
   for (const StaticBox& box : scenario.static_boxes) {
-    line("  - {name: " + Quoted(box.name) + ", " + PoseKeys("center_m", box.X_WO) +
-         ", size_m: " + List(box.size_m) + "}");
+    line("  - {name: " + Quoted(box.name) + ", " + PoseKeys("center_m", box.X_WO) + ", size_m: " +
+         List(box.size_m) + (box.tags.empty() ? "" : ", tags: " + ToYaml(box.tags)) + "}");
   }
   if (!scenario.moving_obstacles.empty()) line("moving_obstacles:");
   for (const MovingObstacle& obstacle : scenario.moving_obstacles) {
@@ -196,6 +196,7 @@ std::string ToYaml(const Scenario& scenario) {
     line("    shape: " + ShapeText(obstacle.shape));
     if (!obstacle.rpy_rad.isZero(0)) line("    rpy_rad: " + List(obstacle.rpy_rad));
     if (!obstacle.appearance.empty()) line("    appearance: " + Quoted(obstacle.appearance));
+    if (!obstacle.tags.empty()) line("    tags: " + ToYaml(obstacle.tags));
     line("    motion: " + MotionText(obstacle));
   }
   if (has_robot) text += PlannerText(scenario);
