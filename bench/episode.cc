@@ -461,8 +461,8 @@ namespace {
 // Of what is known by its shape, and not by cells that the workspace bounds.
 void CheckFieldSizes(const scenarios::Scenario& scenario, const sdf::WorldModelOptions& options) {
   const bool by_truth = options.knowledge == sdf::Knowledge::kFullKnowledge;
-  const bool by_tags =
-      options.knowledge == sdf::Knowledge::kPrediction && scenario.sensor.tags.has_value();
+  const bool by_tags = options.knowledge == sdf::Knowledge::kPrediction &&
+                       (scenario.sensor.tags.has_value() || scenario.sensor.tag_images.has_value());
   if (!by_truth && !by_tags) return;
   const double growth_m = by_tags ? sdf::LargestGrowth(options) : 0;
   for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {

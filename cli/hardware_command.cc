@@ -7,6 +7,7 @@
 
 #include "sidestep/bench/episode.h"
 #include "sidestep/bench/true_world.h"
+#include "sidestep/cli/calibrate.h"
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/hardware_world.h"
@@ -17,6 +18,7 @@
 #include "sidestep/cli/run_folder.h"
 #include "sidestep/cli/run_summary.h"
 #include "sidestep/cli/scenario_options.h"
+#include "sidestep/cli/sensors.h"
 #include "sidestep/cli/stop_signals.h"
 #include "sidestep/cli/tether.h"
 #include "sidestep/cli/wiring.h"
@@ -35,6 +37,7 @@ struct HardwareOptions {
   std::string robot = kDefaultAddress;
   std::string clock = "wall";
   std::string out;
+  std::string calibration;
   bool json = false, dry_run = false, yes = false;
 };
 
@@ -98,6 +101,12 @@ int DryRun(const HardwareOptions& options, const Problem& problem, const DataPat
   return objection || aside ? 1 : 0;
 }
 
+// Sees with a camera from where it was calibrated to stand, if that is given.
+sim::SensorMaker SensorMakerFor(const HardwareOptions& options) {
+  if (options.calibration.empty()) return &MakeSensor;
+  return CalibratedSensors(hardware::ReadCalibration(options.calibration), TodayUtc());
+}
+
 int RunOnHardware(const HardwareOptions& options) {
   const DataPaths paths = FindDataPaths();
   Problem problem = LoadForHardware(options, paths);
@@ -116,7 +125,8 @@ int RunOnHardware(const HardwareOptions& options) {
       HardwareWorlds(paths, options.robot,
                      {.safety = sim::SafetyOf(problem.scenario, problem.robot),
                       .lockstep = lockstep,
-                      .stops_at_once = [&] { return person.WantsItAtOnce(); }});
+                      .stops_at_once = [&] { return person.WantsItAtOnce(); }},
+                     SensorMakerFor(options));
   bench::EpisodeOptions episode;
   episode.clock = lockstep ? bench::EpisodeClock::kVirtual : bench::EpisodeClock::kRobot;
   episode.why_stop = [&] { return person.WhyStop(); };
@@ -278,6 +288,9 @@ void AddHardwareCommand(CommandLine& line) {
   AddRobotOption(*run, *options);
   run->add_option("--out", options->out, "Folder for the results [out/SCENARIO/hardware]");
   run->add_flag("--json", options->json, "Print result.json instead of the summary");
+  run->add_option("--calibration", options->calibration,
+                  "Where the camera of tag_images stands, of `sidestep hardware calibrate`; else "
+                  "as the scenario says");
   run->add_flag("--dry-run", options->dry_run, "Connect, look and plan; send nothing to the robot");
   run->callback([&line, options] { line.exit_code = RunOnHardware(*options); });
 
@@ -297,6 +310,8 @@ void AddHardwareCommand(CommandLine& line) {
       ->description("Whose obstacles must be further off than the protective distance");
   AddRobotOption(*recover, *options);
   recover->callback([&line, options] { line.exit_code = Recover(*options); });
+
+  AddCalibrate(*hardware, line);
 }
 
 }  // namespace sidestep::cli

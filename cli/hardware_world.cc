@@ -26,8 +26,8 @@ scenarios::Scenario WithoutRobot(scenarios::Scenario scenario) {
 class VirtualObstacles final : public robot::RobotInterface {
  public:
   VirtualObstacles(std::unique_ptr<hardware::PandaRobot> panda, const scenarios::Scenario& scenario,
-                   const DataPaths& paths)
-      : panda_(std::move(panda)), obstacles_(WithoutRobot(scenario), paths.models) {}
+                   const DataPaths& paths, const sim::SensorMaker& make_sensor)
+      : panda_(std::move(panda)), obstacles_(WithoutRobot(scenario), paths.models, make_sensor) {}
 
   hardware::PandaRobot& panda() { return *panda_; }
   sim::Simulation& obstacles() { return obstacles_; }
@@ -78,13 +78,15 @@ std::optional<std::string> WhyNotAtStart(const Eigen::VectorXd& q,
 }
 
 bench::WorldFactory HardwareWorlds(const DataPaths& paths, const std::string& address,
-                                   const hardware::PandaOptions& options) {
+                                   const hardware::PandaOptions& options,
+                                   const sim::SensorMaker& make_sensor) {
   return [=](const scenarios::Scenario& scenario, const robot::RobotModel& robot) {
     auto panda = ConnectReadyPanda(address, robot, options);
     if (const auto aside = WhyNotAtStart(panda->Read().q, scenario)) {
       throw InputError("--robot", *aside);
     }
-    const auto stage = std::make_shared<VirtualObstacles>(std::move(panda), scenario, paths);
+    const auto stage =
+        std::make_shared<VirtualObstacles>(std::move(panda), scenario, paths, make_sensor);
     bench::EpisodeWorld world;
     world.robot = stage.get();
     world.sensors = stage->obstacles().sensors();

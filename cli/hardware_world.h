@@ -7,6 +7,7 @@
 #include "sidestep/bench/episode_world.h"
 #include "sidestep/cli/data_paths.h"
 #include "sidestep/hardware/panda_robot.h"
+#include "sidestep/sim/sensors.h"
 
 namespace sidestep::cli {
 
@@ -25,6 +26,7 @@ std::optional<std::string> WhyNotAtStart(const Eigen::VectorXd& q,
 /// arm touches anything real. Each world connects anew.
 /// The factory throws InputError if nobody answers, or the robot is not where the task starts.
 bench::WorldFactory HardwareWorlds(const DataPaths& paths, const std::string& address,
-                                   const hardware::PandaOptions& options);
+                                   const hardware::PandaOptions& options,
+                                   const sim::SensorMaker& make_sensor);
 
 }  // namespace sidestep::cli

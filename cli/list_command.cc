@@ -9,6 +9,7 @@
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/data_paths.h"
+#include "sidestep/cli/sensors.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
 #include "sidestep/planner/parameters.h"
@@ -17,7 +18,6 @@
 #include "sidestep/scenarios/scenario.h"
 #include "sidestep/sdf/prediction/registry.h"
 #include "sidestep/sdf/world_model.h"
-#include "sidestep/sim/sensors.h"
 
 namespace sidestep::cli {
 namespace {
@@ -74,7 +74,7 @@ class Catalogue {
     kinds_.push_back({"planners", Items(planner::PlannerNames(), &planner::MeaningOfPlanner)});
     for (Item& planner : kinds_.back().items) planner.details = ParametersOf(planner.name);
     kinds_.push_back({"predictors", Items(sdf::PredictorNames(), &sdf::MeaningOfPredictor)});
-    kinds_.push_back({"sensors", Items(sim::SensorNames(), &sim::MeaningOfSensor)});
+    kinds_.push_back({"sensors", Items(SensorNames(), &MeaningOfSensor)});
     Kind& metrics = kinds_.emplace_back(Kind{"metrics", {}});
     for (const bench::Metric& metric : bench::Metrics()) {
       metrics.items.push_back(

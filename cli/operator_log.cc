@@ -58,6 +58,8 @@ CsvFile Read(const std::string& path) {
 OperatorLog::OperatorLog(std::string robot)
     : robot_(std::move(robot)), path_(StateFolder() / "sidestep/hardware.csv") {}
 
+std::string TodayUtc() { return fmt::format("{:%F}", fmt::gmtime(std::time(nullptr))); }
+
 void OperatorLog::Refused(const hardware::Objection& objection) const {
   Append(objection, control::ToString(control::Reaction::kRefuse));
 }

@@ -33,4 +33,7 @@ class OperatorLog {
   std::string robot_, path_;
 };
 
+/// The day, YYYY-MM-DD.
+std::string TodayUtc();
+
 }  // namespace sidestep::cli

@@ -6,6 +6,7 @@
 
 #include "sidestep/bench/resolve.h"
 #include "sidestep/bench/scenario_planner.h"
+#include "sidestep/cli/sensors.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
 #include "sidestep/scenarios/variations.h"
@@ -13,7 +14,6 @@
 #include "sidestep/sdf/world_model.h"
 #include "sidestep/sim/arm_file.h"
 #include "sidestep/sim/robot_agreement.h"
-#include "sidestep/sim/sensors.h"
 #include "sidestep/sim/simulation.h"
 
 namespace sidestep::cli {
@@ -106,7 +106,7 @@ scenarios::Scenario LoadOverridden(const std::string& name, const Overrides& ove
             overrides.knowledge ? "--knowledge" : nullptr);
   CheckWord(scenario, "predictor", scenario.predictor, sdf::PredictorNames(),
             overrides.predictor ? "--predictor" : nullptr);
-  CheckWord(scenario, "sensor.name", scenario.sensor.name, sim::SensorNames());
+  CheckWord(scenario, "sensor.name", scenario.sensor.name, SensorNames());
   for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
     const std::string& appearance = scenario.moving_obstacles[i].appearance;
     if (appearance.empty()) continue;
@@ -171,8 +171,8 @@ Problem LoadProblem(const std::string& name, const Overrides& overrides, const D
 Scene LoadScene(const std::string& name, const Overrides& overrides, const DataPaths& paths) {
   scenarios::Scenario scenario = LoadOverridden(name, overrides, paths);
   if (scenario.robot.empty()) {
-    bench::EpisodeWorld world =
-        bench::MakeEpisodeWorld(std::make_shared<sim::Simulation>(scenario, paths.models));
+    bench::EpisodeWorld world = bench::MakeEpisodeWorld(
+        std::make_shared<sim::Simulation>(scenario, paths.models, &MakeSensor));
     return {std::move(scenario), std::move(world)};
   }
   Problem problem = AddRobot(std::move(scenario), paths);
@@ -183,7 +183,8 @@ Scene LoadScene(const std::string& name, const Overrides& overrides, const DataP
 bench::WorldFactory SimulatedWorlds(const DataPaths& paths) {
   return
       [models = paths.models](const scenarios::Scenario& scenario, const robot::RobotModel& robot) {
-        return bench::MakeEpisodeWorld(std::make_shared<sim::Simulation>(scenario, robot, models));
+        return bench::MakeEpisodeWorld(
+            std::make_shared<sim::Simulation>(scenario, robot, models, &MakeSensor));
       };
 }
 

@@ -22,6 +22,20 @@ set(SIDESTEP_FIND_FRANKA)
 if(franka_target)
   set(SIDESTEP_FIND_FRANKA "find_dependency(Franka 0.9)")
 endif()
+get_property(realsense_target GLOBAL PROPERTY SIDESTEP_REALSENSE)
+set(SIDESTEP_FIND_REALSENSE)
+if(realsense_target)
+  set(SIDESTEP_FIND_REALSENSE "find_dependency(realsense2 2.50)")
+endif()
+get_property(vision_targets GLOBAL PROPERTY SIDESTEP_VISION)
+set(SIDESTEP_FIND_VISION)
+set(vision_packages)
+if(vision_targets)
+  set(SIDESTEP_FIND_VISION
+      "include(\${CMAKE_CURRENT_LIST_DIR}/Vision.cmake)\nsidestep_find_vision(_sidestep_vision _why)")
+  set(vision_packages ", libapriltag-dev, libopencv-calib3d-dev")
+  install(FILES cmake/Vision.cmake DESTINATION ${package_dir} COMPONENT development)
+endif()
 configure_package_config_file(
   cmake/sidestep-config.cmake.in ${PROJECT_BINARY_DIR}/sidestep-config.cmake
   INSTALL_DESTINATION ${package_dir} NO_SET_AND_CHECK_MACRO)
@@ -55,5 +69,5 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "cmake, pkg-config, libavcodec-dev, libavformat-dev, libavutil-dev, libceres-dev, libeigen3-dev, \
 libfmt-dev, libhdf5-dev, libhwy-dev, libmujoco-dev, libosmesa6-dev, libqhull-dev, libswscale-dev, \
-libtbb-dev, libtinyxml2-dev, libyaml-cpp-dev, nlohmann-json3-dev")
+libtbb-dev, libtinyxml2-dev, libyaml-cpp-dev, nlohmann-json3-dev${vision_packages}")
 include(CPack)

@@ -47,16 +47,22 @@ GlContext::GlContext() {
   mesa_ = std::make_unique<Mesa>();
   mesa_->context =
       OSMesaCreateContextExt(OSMESA_RGBA, /*depthBits=*/24, /*stencilBits=*/8, 0, nullptr);
+  MakeCurrent();
+  renderer_ = GlString(GL_RENDERER);
+  version_ = GlString(GL_VERSION);
+}
+
+GlContext::~GlContext() {
+  if (OSMesaGetCurrentContext() == mesa_->context) OSMesaMakeCurrent(nullptr, nullptr, 0, 0, 0);
+}
+
+void GlContext::MakeCurrent() const {
   if (mesa_->context == nullptr ||
       OSMesaMakeCurrent(mesa_->context, mesa_->window.data(), GL_UNSIGNED_BYTE, kWindowPixels,
                         kWindowPixels) == GL_FALSE) {
     throw InputError("OSMesa", "cannot make an OpenGL context (is libosmesa6 whole?)");
   }
-  renderer_ = GlString(GL_RENDERER);
-  version_ = GlString(GL_VERSION);
 }
-
-GlContext::~GlContext() { OSMesaMakeCurrent(nullptr, nullptr, 0, 0, 0); }
 
 std::string DescribeGl() {
   try {

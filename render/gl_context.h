@@ -6,8 +6,9 @@
 namespace sidestep::render {
 
 /// An OpenGL context that draws into memory, with OSMesa: no display, no GPU, the same picture each
-/// time. While it lives it is current in the thread that made it; have one a process. Everything
-/// that draws takes it by reference, as a proof that it is there, and must not outlive it.
+/// time. It is current in the thread that made it until another one is made there; who draws beside
+/// others calls MakeCurrent first. Everything that draws takes it by reference, as a proof that it
+/// is there, and must not outlive it.
 class GlContext {
  public:
   /// Obeys MUJOCO_GL: `osmesa`, empty or unset; anything else is refused.
@@ -16,6 +17,9 @@ class GlContext {
   ~GlContext();
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;
+
+  /// Makes it current again, in the calling thread, where another one may have been meanwhile.
+  void MakeCurrent() const;
 
   const std::string& renderer() const { return renderer_; }  ///< GL_RENDERER
   const std::string& version() const { return version_; }    ///< GL_VERSION

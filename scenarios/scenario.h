@@ -15,6 +15,7 @@
 #include "sidestep/core/time.h"
 #include "sidestep/scenarios/recorded_track.h"
 #include "sidestep/scenarios/sensor_settings.h"
+#include "sidestep/scenarios/tag.h"
 
 namespace sidestep::scenarios {
 
@@ -26,6 +27,7 @@ struct StaticBox {
   std::string name;
   Pose X_WO;
   Eigen::Vector3d size_m;
+  std::vector<Tag> tags = {};  ///< printed on it
 };
 
 // Every motion has a speed_m_s (>= 0), rests at its start until begin_at_s, and stands still from
@@ -123,6 +125,7 @@ struct MovingObstacle {
   std::string appearance;  ///< a body of models/ to draw inside the shape; empty: draw the shape
   /// Turned about z so that its x axis (before rpy_rad) points where it goes, see DirectionAt.
   bool faces_path = false;
+  std::vector<Tag> tags = {};  ///< printed on it, which is then a box
 };
 
 /// What a planning cycle takes of the episode's time.

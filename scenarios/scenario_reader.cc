@@ -130,6 +130,7 @@ void ReadStaticBoxes(const YamlReader& top, Scenario& scenario, std::set<std::st
         map.Has("rpy_rad") ? map.GetVector3("rpy_rad") : Eigen::Vector3d(0, 0, 0);
     box.X_WO = Pose::FromRollPitchYaw(rpy, center);
     box.size_m = map.GetPositiveVector3("size_m");
+    box.tags = ReadTags(map, box.size_m);
     map.CheckNoUnknownKeys();
     scenario.static_boxes.push_back(box);
   }
@@ -341,6 +342,35 @@ void SeedMotions(Scenario& scenario) {
   }
 }
 
+std::vector<Tag> ReadTagsOfObstacle(const YamlReader& map, const MovingObstacle& obstacle) {
+  if (!map.Has("tags")) return {};
+  const Box* const box = std::get_if<Box>(&obstacle.shape);
+  if (box == nullptr) map.Fail("tags", "are for boxes; this is no box", "shape");
+  if (!obstacle.appearance.empty()) {
+    map.Fail("tags", "are printed on a box, and an appearance hides it", "appearance");
+  }
+  return ReadTags(map, box->size_m);
+}
+
+// One that is there twice says nothing about where it is.
+void CheckTagIds(const Scenario& scenario) {
+  std::set<int> ids;
+  const auto check = [&](const std::string& list, std::size_t i, const std::vector<Tag>& tags) {
+    for (std::size_t k = 0; k < tags.size(); ++k) {
+      if (ids.insert(tags[k].id).second) continue;
+      throw WrongValue(scenario,
+                       list + "[" + std::to_string(i) + "].tags[" + std::to_string(k) + "].id",
+                       std::to_string(tags[k].id) + " is another tag's");
+    }
+  };
+  for (std::size_t i = 0; i < scenario.static_boxes.size(); ++i) {
+    check("static_boxes", i, scenario.static_boxes[i].tags);
+  }
+  for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
+    check("moving_obstacles", i, scenario.moving_obstacles[i].tags);
+  }
+}
+
 void ReadMovingObstacles(const YamlReader& top, const std::optional<std::string>& folder,
                          Scenario& scenario, std::set<std::string>& names) {
   if (!top.Has("moving_obstacles")) return;
@@ -351,6 +381,7 @@ void ReadMovingObstacles(const YamlReader& top, const std::optional<std::string>
     obstacle.rpy_rad = map.Has("rpy_rad") ? map.GetVector3("rpy_rad") : Eigen::Vector3d(0, 0, 0);
     ReadMotion(map, folder, obstacle);
     obstacle.appearance = map.Has("appearance") ? map.GetString("appearance") : "";
+    obstacle.tags = ReadTagsOfObstacle(map, obstacle);
     map.CheckNoUnknownKeys();
     scenario.moving_obstacles.push_back(obstacle);
   }
@@ -572,6 +603,7 @@ Scenario ReadSettled(const YamlReader& top, const Origin& origin) {
   scenario.static_world = exact ? StaticWorld::kExact : StaticWorld::kOccupancy;
   ReadStaticBoxes(top, scenario, names);
   ReadMovingObstacles(top, folder, scenario, names);
+  CheckTagIds(scenario);
   if (has_robot) {
     ReadPlanner(top, scenario);
     ReadReplanning(top, scenario);

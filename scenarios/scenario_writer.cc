@@ -119,6 +119,7 @@ std::vector<std::pair<std::string, std::string>> ObstacleKeys(const MovingObstac
                                                            {"shape", ShapeText(obstacle.shape)}};
   if (!obstacle.rpy_rad.isZero(0)) keys.emplace_back("rpy_rad", List(obstacle.rpy_rad));
   if (!obstacle.appearance.empty()) keys.emplace_back("appearance", Quoted(obstacle.appearance));
+  if (!obstacle.tags.empty()) keys.emplace_back("tags", ToYaml(obstacle.tags));
   keys.emplace_back("motion", MotionText(obstacle));
   return keys;
 }
@@ -211,8 +212,8 @@ std::string ToYaml(const Scenario& scenario) {
        (scenario.static_world == StaticWorld::kExact ? "exact" : "occupancy"));
   if (!scenario.static_boxes.empty()) line("static_boxes:");
   for (const StaticBox& box : scenario.static_boxes) {
-    line("  - {name: " + Quoted(box.name) + ", " + PoseKeys("center_m", box.X_WO) +
-         ", size_m: " + List(box.size_m) + "}");
+    line("  - {name: " + Quoted(box.name) + ", " + PoseKeys("center_m", box.X_WO) + ", size_m: " +
+         List(box.size_m) + (box.tags.empty() ? "" : ", tags: " + ToYaml(box.tags)) + "}");
   }
   if (!scenario.moving_obstacles.empty()) line("moving_obstacles:");
   for (const MovingObstacle& obstacle : scenario.moving_obstacles) {

@@ -1,5 +1,7 @@
 #include "sidestep/scenarios/sensor_settings.h"
 
+#include <algorithm>
+
 #include "sidestep/core/yaml_reader.h"
 #include "sidestep/scenarios/yaml_text.h"
 
@@ -9,6 +11,7 @@ namespace {
 // Bounds against slips of the pen, generous for any sensor.
 constexpr double kMaxRateHz = 1000, kMaxDelay = 10, kMaxNoise = 1;
 constexpr int kMaxPixels = 2048;
+constexpr double kMaxDistortion = 1, kMaxExposure = 0.1, kMaxBlur = 10, kMaxGreyNoise = 100;
 
 double AtMost(const YamlReader& map, const char* key, double otherwise, double most) {
   if (!map.Has(key)) return otherwise;
@@ -42,13 +45,19 @@ OccupancyNoise ReadNoise(const YamlReader& map) {
   return noise;
 }
 
-CameraSettings ReadCamera(const YamlReader& map) {
-  CameraSettings camera;
-  camera.position_m = map.GetVector3("position_m");
-  camera.look_at_m = map.GetVector3("look_at_m");
-  if (!((camera.look_at_m - camera.position_m).norm() > 1e-6)) {
+// Where a camera stands and looks.
+template <class Settings>
+void ReadView(const YamlReader& map, Settings* camera) {
+  camera->position_m = map.GetVector3("position_m");
+  camera->look_at_m = map.GetVector3("look_at_m");
+  if (!((camera->look_at_m - camera->position_m).norm() > 1e-6)) {
     map.Fail("look_at_m", "must differ from position_m", "position_m");
   }
+}
+
+CameraSettings ReadCamera(const YamlReader& map) {
+  CameraSettings camera;
+  ReadView(map, &camera);
   camera.field_of_view_rad = PositiveAtMost(map, "field_of_view_rad", camera.field_of_view_rad, 3);
   camera.width = Pixels(map, "width", camera.width);
   camera.height = Pixels(map, "height", camera.height);
@@ -73,7 +82,37 @@ TagSettings ReadTags(const YamlReader& map) {
   return tags;
 }
 
+TagImageSettings ReadTagImages(const YamlReader& map) {
+  TagImageSettings images;
+  ReadView(map, &images);
+  images.field_of_view_rad = PositiveAtMost(map, "field_of_view_rad", images.field_of_view_rad, 2);
+  images.width = Pixels(map, "width", images.width);
+  images.height = Pixels(map, "height", images.height);
+  if (map.Has("distortion")) {
+    const Eigen::VectorXd distortion = map.GetVector("distortion", 5);
+    if (distortion.cwiseAbs().maxCoeff() > kMaxDistortion) {
+      map.Fail("distortion", "must be numbers from -1 to 1");
+    }
+    std::copy(distortion.begin(), distortion.end(), images.distortion.begin());
+  }
+  images.exposure_s = AtMost(map, "exposure_s", images.exposure_s, kMaxExposure);
+  images.blur_px = AtMost(map, "blur_px", images.blur_px, kMaxBlur);
+  images.grey_noise = AtMost(map, "grey_noise", images.grey_noise, kMaxGreyNoise);
+  map.CheckNoUnknownKeys();
+  return images;
+}
+
 }  // namespace
+
+Pose PoseOfCamera(const Eigen::Vector3d& position_m, const Eigen::Vector3d& look_at_m) {
+  const Eigen::Vector3d forward = (look_at_m - position_m).normalized();
+  Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ());
+  if (right.norm() < 1e-6) right = Eigen::Vector3d::UnitX();
+  right.normalize();
+  Eigen::Matrix3d R_WC;
+  R_WC << right, forward.cross(right), forward;
+  return Pose(Eigen::Quaterniond(R_WC), position_m);
+}
 
 SensorSettings ReadSensorSettings(const YamlReader& map) {
   SensorSettings settings;
@@ -90,6 +129,7 @@ SensorSettings ReadSensorSettings(const YamlReader& map) {
   if (map.Has("noise")) settings.noise = ReadNoise(map.GetMap("noise"));
   if (map.Has("camera")) settings.camera = ReadCamera(map.GetMap("camera"));
   if (map.Has("tags")) settings.tags = ReadTags(map.GetMap("tags"));
+  if (map.Has("tag_images")) settings.tag_images = ReadTagImages(map.GetMap("tag_images"));
   map.CheckNoUnknownKeys();
   return settings;
 }
@@ -123,6 +163,17 @@ std::string ToYaml(const SensorSettings& settings) {
             ", along_noise_per_m: " + Number(tags.along_noise_per_m) +
             ", rotation_noise_rad: " + Number(tags.rotation_noise_rad) +
             ", range_m: " + Number(tags.range_m) + "}\n";
+  }
+  if (settings.tag_images) {
+    const TagImageSettings& images = *settings.tag_images;
+    const Eigen::Map<const Eigen::VectorXd> distortion(images.distortion.data(), 5);
+    text += "  tag_images: {position_m: " + List(images.position_m) +
+            ", look_at_m: " + List(images.look_at_m) +
+            ", field_of_view_rad: " + Number(images.field_of_view_rad) +
+            ", width: " + std::to_string(images.width) +
+            ", height: " + std::to_string(images.height) + ", distortion: " + List(distortion) +
+            ", exposure_s: " + Number(images.exposure_s) + ", blur_px: " + Number(images.blur_px) +
+            ", grey_noise: " + Number(images.grey_noise) + "}\n";
   }
   return text;
 }

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
 
 #include "sidestep/core/cell_touch.h"
+#include "sidestep/core/pose.h"
 #include "sidestep/core/yaml_reader.h"
 
 namespace sidestep::scenarios {
@@ -41,6 +43,20 @@ struct TagSettings {
   double range_m = 5;                                    ///< farther things are not found
 };
 
+/// A colour or infrared camera whose pictures are searched for the tags that are printed on boxes,
+/// with the lens and the errors of its pictures. Defaults are those of the colour camera of a
+/// RealSense D435i; its angle from the data sheet, blur and noise from a study of tags.
+struct TagImageSettings {
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();  ///< in W
+  Eigen::Vector3d look_at_m = Eigen::Vector3d::Zero();
+  double field_of_view_rad = 1.211;       ///< horizontal, without distortion
+  int width = 1280, height = 720;         ///< pixels
+  std::array<double, 5> distortion = {};  ///< k1, k2, p1, p2, k3 (robot/camera_image.h)
+  double exposure_s = 0.008;              ///< around the time of capture
+  double blur_px = 0.7;                   ///< standard deviation of the lens
+  double grey_noise = 3;                  ///< standard deviation of each pixel, of 255
+};
+
 /// A sensor as the scenario describes it.
 struct SensorSettings {
   std::string name = "occupancy";
@@ -56,7 +72,13 @@ struct SensorSettings {
   std::optional<OccupancyNoise> noise;
   std::optional<CameraSettings> camera;
   std::optional<TagSettings> tags;
+  std::optional<TagImageSettings> tag_images;
 };
+
+/// The pose X_WC of a camera that looks from one point to another, its image upright (where it
+/// looks straight up or down: its right along x). Its frame C: x to the right of the image, y down,
+/// z forward.
+Pose PoseOfCamera(const Eigen::Vector3d& position_m, const Eigen::Vector3d& look_at_m);
 
 /// Reads the map `sensor`. @throws InputError FILE:LINE: KEY: WHY.
 SensorSettings ReadSensorSettings(const YamlReader& sensor);

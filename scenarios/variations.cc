@@ -95,6 +95,7 @@ void AddChangedNoise(const SensorSettings& sensor, std::vector<std::string>& cha
     add("tags", sensor.tags->across_noise > 0 || sensor.tags->along_noise_per_m > 0 ||
                     sensor.tags->rotation_noise_rad > 0);
   }
+  if (sensor.tag_images) add("tag_images", sensor.tag_images->grey_noise > 0);
 }
 
 }  // namespace

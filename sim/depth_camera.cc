@@ -5,17 +5,6 @@
 namespace sidestep::sim {
 namespace {
 
-// The pose of an upright camera that looks from one point to another.
-Pose LookAt(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  const Eigen::Vector3d forward = (to - from).normalized();
-  Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ());
-  if (right.norm() < 1e-6) right = Eigen::Vector3d::UnitX();  // straight up or down
-  right.normalize();
-  Eigen::Matrix3d R_WC;
-  R_WC << right, forward.cross(right), forward;
-  return Pose(Eigen::Quaterniond(R_WC), from);
-}
-
 Eigen::Matrix3Xd Columns(const std::vector<Eigen::Vector3d>& points) {
   Eigen::Matrix3Xd columns(3, static_cast<Eigen::Index>(points.size()));
   for (std::size_t n = 0; n < points.size(); ++n) {
@@ -32,7 +21,7 @@ DepthCamera::DepthCamera(const World& world, const scenarios::CameraSettings& se
       settings_(settings),
       clock_(rate_hz),
       caster_(world.model()),
-      X_WC_(LookAt(settings.position_m, settings.look_at_m)),
+      X_WC_(scenarios::PoseOfCamera(settings.position_m, settings.look_at_m)),
       depth_(seed, "camera depth"),
       dropout_(seed, "camera dropout") {
   const double focal_px = settings.width / 2.0 / std::tan(settings.field_of_view_rad / 2);

@@ -42,7 +42,8 @@ void CheckSettings(const scenarios::Scenario& scenario, const Entry& entry) {
     bool given;
   } maps[] = {{"noise", sensor.noise.has_value()},
               {"camera", sensor.camera.has_value()},
-              {"tags", sensor.tags.has_value()}};
+              {"tags", sensor.tags.has_value()},
+              {"tag_images", sensor.tag_images.has_value()}};
   for (const auto& [key, given] : maps) {
     if (given && entry.settings != key && entry.settings != key + "?") {
       Fail(scenario, key, "is not for " + of);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,8 +17,12 @@ std::vector<std::string> SensorNames();
 /// What one sees, in a line. @throws std::invalid_argument for an unknown name.
 std::string MeaningOfSensor(const std::string& name);
 
+/// Makes a scenario's sensor in a world, which must outlive it.
+using SensorMaker =
+    std::function<std::unique_ptr<robot::Sensor>(const scenarios::Scenario&, const World&)>;
+
 /// Makes the scenario's sensor. @param world must outlive it.
-/// @throws InputError for a name that is not known.
+/// @throws InputError for a name that is not known, or settings of another sensor.
 std::unique_ptr<robot::Sensor> MakeSensor(const scenarios::Scenario& scenario, const World& world);
 
 }  // namespace sidestep::sim

@@ -6,7 +6,6 @@
 #include "sidestep/sim/no_robot.h"
 #include "sidestep/sim/robot_agreement.h"
 #include "sidestep/sim/safety_of.h"
-#include "sidestep/sim/sensors.h"
 #include "sidestep/sim/simulated_robot.h"
 #include "sidestep/sim/world_xml.h"
 
@@ -49,7 +48,7 @@ MujocoModelPtr Compile(const std::string& xml, const scenarios::Scenario& scenar
 }  // namespace
 
 Simulation::Simulation(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
-                       const std::string& models_dir)
+                       const std::string& models_dir, const SensorMaker& make_sensor)
     : model_xml_(BuildWorldXml(scenario, robot.mount_links(), models_dir)),
       joints_(robot.joint_names()),
       obstacles_(NamesOf(scenario.moving_obstacles)),
@@ -60,9 +59,10 @@ Simulation::Simulation(const scenarios::Scenario& scenario, const robot::RobotMo
           robot, &world_, [this] { truth_.Observe(); }, scenario.velocity_limits ? 1 : kUnlimited,
           SafetyOf(scenario, robot))),
       sensor_name_(scenario.sensor.name),
-      sensor_(MakeSensor(scenario, world_)) {}
+      sensor_(make_sensor(scenario, world_)) {}
 
-Simulation::Simulation(const scenarios::Scenario& scenario, const std::string& models_dir)
+Simulation::Simulation(const scenarios::Scenario& scenario, const std::string& models_dir,
+                       const SensorMaker& make_sensor)
     : model_xml_(BuildWorldXml(scenario, {}, models_dir)),
       obstacles_(NamesOf(scenario.moving_obstacles)),
       world_(scenario, LoadMujocoModel(model_xml_, scenario.file + ": its world"), {},
@@ -70,6 +70,6 @@ Simulation::Simulation(const scenarios::Scenario& scenario, const std::string& m
       truth_(world_),
       robot_(std::make_unique<NoRobot>(&world_)),
       sensor_name_(scenario.sensor.name),
-      sensor_(MakeSensor(scenario, world_)) {}
+      sensor_(make_sensor(scenario, world_)) {}
 
 }  // namespace sidestep::sim

@@ -9,6 +9,7 @@
 #include "sidestep/robot/sensor.h"
 #include "sidestep/robot/world_truth.h"
 #include "sidestep/scenarios/scenario.h"
+#include "sidestep/sim/sensors.h"
 #include "sidestep/sim/simulated_truth.h"
 #include "sidestep/sim/world.h"
 
@@ -23,10 +24,12 @@ class Simulation {
   /// @throws InputError for a robot whose robot.yaml and MJCF do not agree (sim/robot_agreement.h),
   ///   model files that do not fit, a start that the robot does not have, or
   ///   an unknown sensor.
+  /// @param make_sensor for who has more sensors than these (sim/sensors.h).
   Simulation(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
-             const std::string& models_dir);
+             const std::string& models_dir, const SensorMaker& make_sensor = MakeSensor);
   /// The world of a scenario without a robot; robot() is then only its clock (sim/no_robot.h).
-  Simulation(const scenarios::Scenario& scenario, const std::string& models_dir);
+  Simulation(const scenarios::Scenario& scenario, const std::string& models_dir,
+             const SensorMaker& make_sensor = MakeSensor);
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 

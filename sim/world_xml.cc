@@ -2,6 +2,7 @@
 
 #include <tinyxml2.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <initializer_list>
@@ -222,12 +223,67 @@ void AddCameras(const scenarios::Scenario& scenario, XMLElement* worldbody) {
             X_WB.Rotate(Eigen::Vector3d::UnitX()), worldbody);
 }
 
+// Dark and light of a print without gloss. MuJoCo takes pictures from files alone, and a world's
+// text refers to none; squares are also free of the blur that a texture is drawn with.
+constexpr const char* kPaperMaterial = "world/paper";
+constexpr const char* kInkMaterial = "world/ink";
+
+void AddTagMaterials(const scenarios::Scenario& scenario, XMLElement* asset) {
+  const auto bears = [](const auto& box) { return !box.tags.empty(); };
+  const auto& fixed = scenario.static_boxes;
+  const auto& moving = scenario.moving_obstacles;
+  if (std::none_of(fixed.begin(), fixed.end(), bears) &&
+      std::none_of(moving.begin(), moving.end(), bears)) {
+    return;
+  }
+  for (const auto& [name, rgba] : {std::pair(kPaperMaterial, "0.92 0.92 0.92 1"),
+                                   std::pair(kInkMaterial, "0.06 0.06 0.06 1")}) {
+    Append(asset, "material", {{"name", name}, {"rgba", rgba}, {"specular", "0"}});
+  }
+}
+
+// A rectangle in a tag's frame, edges [m], whose outer side is `before_m` before the face.
+void AddPrint(const Pose& X_OT, const Eigen::Vector2d& center_m, const Eigen::Vector2d& edges_m,
+              double before_m, const char* material, XMLElement* body) {
+  constexpr double kThick_m = 5e-4;
+  XMLElement* geom = Append(body, "geom", {{"type", "box"}});
+  Set(geom, "size", ToText(Eigen::Vector3d(edges_m.x() / 2, edges_m.y() / 2, kThick_m / 2)));
+  const Eigen::Vector3d p_TG(center_m.x(), center_m.y(), kThick_m / 2 - before_m);
+  SetPose(geom, X_OT * Pose::Translation(p_TG));
+  Set(geom, "material", material);
+  Set(geom, "contype", "0");
+  Set(geom, "conaffinity", "0");
+  Set(geom, "group", "2");
+}
+
+void AddTag(const scenarios::Tag& tag, const Eigen::Vector3d& box_size_m, XMLElement* body) {
+  constexpr int n = scenarios::kTagModules;
+  const Pose X_OT = scenarios::TagPose(box_size_m, tag.face);
+  const double print_m = scenarios::kTagPrint * tag.size_m, module_m = print_m / n;
+  AddPrint(X_OT, {0, 0}, {print_m, print_m}, 5e-5, kPaperMaterial, body);
+  const auto black = scenarios::BlackModules(tag.id);
+  for (int y = 0; y < n; ++y) {
+    for (int x = 0; x < n; ++x) {  // runs of black
+      const auto is_black = [&](int at) {
+        return at < n && black[static_cast<std::size_t>(n * y + at)];
+      };
+      int end = x;
+      while (is_black(end)) ++end;
+      if (end == x) continue;
+      const Eigen::Vector2d center((x + end - n) / 2.0, y + 0.5 - n / 2.0);
+      AddPrint(X_OT, module_m * center, {module_m * (end - x), module_m}, 1e-4, kInkMaterial, body);
+      x = end;
+    }
+  }
+}
+
 void AddStaticBox(const scenarios::StaticBox& box, XMLElement* worldbody) {
   XMLElement* body = Append(worldbody, "body", {{"name", box.name}});
   SetPose(body, box.X_WO);
   XMLElement* geom = Append(body, "geom", {{"name", box.name}});
   SetShape(geom, Box{box.size_m});
   Set(geom, "material", kBoxMaterial);
+  for (const scenarios::Tag& tag : box.tags) AddTag(tag, box.size_m, body);
 }
 
 // X_OA of the appearance in the obstacle's frame: at its foot, looking where it goes.
@@ -264,6 +320,8 @@ void AddMovingObstacle(const scenarios::Scenario& scenario, std::size_t index,
   SetShape(geom, obstacle.shape);
   if (obstacle.appearance.empty()) {
     Set(geom, "material", kObstacleMaterial);
+    const Box* const box = std::get_if<Box>(&obstacle.shape);
+    for (const scenarios::Tag& tag : obstacle.tags) AddTag(tag, box->size_m, body);
     return;
   }
   Set(geom, "group", "4");
@@ -316,6 +374,7 @@ std::string BuildWorldXml(const scenarios::Scenario& scenario,
   Set(world, "model", scenario.name);
   AddSettings(scenario, world);
   AddAssets(world);
+  AddTagMaterials(scenario, world->FirstChildElement("asset"));
   XMLElement* worldbody = Append(world, "worldbody");
   AddFloorAndLights(scenario, worldbody);
   AddCameras(scenario, worldbody);

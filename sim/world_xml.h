@@ -26,6 +26,8 @@ inline constexpr const char* kTopCamera = "top";
 ///   translucent, to be shown as a shell), and what `<models_dir>/<appearance>/<appearance>.xml`
 ///   draws by default stands inside it: geoms of group 2 that touch nothing, origin at the middle
 ///   of the shape's underside, x axis along the first leg of the motion (as far as it is level).
+/// - Tags, where a box has them: a white plate and black squares, geoms of group 2 that touch
+///   nothing, a tenth of a millimetre before the face.
 /// - The floor, lights, and the cameras `overview` and `top`.
 /// - Contacts between each of `mount_links` (bodies of the robot) and what it stands on are
 ///   excluded: the scenario's mount or, without one, the floor.

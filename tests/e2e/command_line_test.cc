@@ -186,6 +186,13 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"SettingOfASensorWithoutItsSettings",
                 {"run", "hsr_walkway", "--set", "sensor.name=tags"},
                 {"--set sensor.name: sensor.tags: is missing"}},
+        Mistake{
+            "SettingOfACameraWithoutItsSettings",
+            {"run", "hsr_walkway", "--set", "sensor.name=tag_images"},
+            {"--set sensor.name: sensor.tag_images: is missing; the sensor 'tag_images' needs it"}},
+        Mistake{"CalibrationOfNoCamera",
+                {"hardware", "run", "hardware_single_table", "--calibration", "none.yaml"},
+                {"none.yaml: "}},
         Mistake{"FieldAboveTheWorkspace",
                 {"field", "hsr_walkway", "--out", "x.png", "--height", "7"},
                 {"--height: must be within the workspace, from -1.02 to 2.82 m, is 7"}},

@@ -1,0 +1,103 @@
+#include "sidestep/cli/sensors.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "sidestep/core/input_error.h"
+#include "sidestep/render/rendered_camera.h"
+#include "sidestep/sim/static_cells.h"
+
+namespace sidestep::cli {
+namespace {
+
+constexpr const char* kTagImages = "tag_images";
+
+hardware::TaggedBody BodyOf(const std::string& name, const Eigen::Vector3d& size_m,
+                            const std::vector<scenarios::Tag>& tags) {
+  hardware::TaggedBody body{name, Box{size_m}, {}};
+  for (const scenarios::Tag& tag : tags) {
+    body.tags.push_back({tag.id, tag.size_m, scenarios::TagPose(size_m, tag.face)});
+  }
+  return body;
+}
+
+// The settings that it needs, and none of another sensor's.
+void CheckSettings(const scenarios::Scenario& scenario) {
+  const scenarios::SensorSettings& sensor = scenario.sensor;
+  for (const auto& [key, is_given] : {std::pair("noise", sensor.noise.has_value()),
+                                      std::pair("camera", sensor.camera.has_value()),
+                                      std::pair("tags", sensor.tags.has_value())}) {
+    if (!is_given) continue;
+    throw scenarios::WrongValue(scenario, std::string("sensor.") + key,
+                                "is not for the sensor 'tag_images'", {"sensor.name"});
+  }
+  if (!sensor.tag_images) {
+    throw scenarios::WrongValue(scenario, "sensor.tag_images",
+                                "is missing; the sensor 'tag_images' needs it", {"sensor.name"});
+  }
+}
+
+std::unique_ptr<robot::Sensor> MakeTagImages(const scenarios::Scenario& scenario,
+                                             const sim::World& world,
+                                             const std::optional<Pose>& X_WC = std::nullopt) {
+  CheckSettings(scenario);
+  auto frames = std::make_unique<render::RenderedCamera>(scenario, world);
+  hardware::TagSensorOptions options = TagSensorOptionsOf(scenario);
+  if (X_WC) options.X_WC = *X_WC;
+  options.p_WStatic = sim::StaticCells(world, scenario.grid, scenario.sensor.cells);
+  return std::make_unique<hardware::TagSensor>(std::move(frames), std::move(options));
+}
+
+}  // namespace
+
+std::vector<std::string> SensorNames() {
+  std::vector<std::string> names = sim::SensorNames();
+  names.emplace_back(kTagImages);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string MeaningOfSensor(const std::string& name) {
+  if (name != kTagImages) return sim::MeaningOfSensor(name);
+  return "poses of boxes by their AprilTags, found in pictures of a camera";
+}
+
+hardware::TagSensorOptions TagSensorOptionsOf(const scenarios::Scenario& scenario) {
+  hardware::TagSensorOptions options;
+  const scenarios::TagImageSettings& settings = scenario.sensor.tag_images.value();
+  options.X_WC = scenarios::PoseOfCamera(settings.position_m, settings.look_at_m);
+  for (const scenarios::MovingObstacle& obstacle : scenario.moving_obstacles) {
+    if (obstacle.tags.empty()) continue;
+    const Eigen::Vector3d size_m = std::get<Box>(obstacle.shape).size_m;
+    options.bodies.push_back(BodyOf(obstacle.name, size_m, obstacle.tags));
+  }
+  for (const scenarios::StaticBox& box : scenario.static_boxes) {
+    if (box.tags.empty()) continue;
+    options.references.push_back({BodyOf(box.name, box.size_m, box.tags), box.X_WO});
+  }
+  return options;
+}
+
+sim::SensorMaker CalibratedSensors(const hardware::CameraCalibration& calibration,
+                                   const std::string& today) {
+  return [=](const scenarios::Scenario& scenario, const sim::World& world) {
+    if (scenario.sensor.name != kTagImages) {
+      throw InputError("--calibration", "is of a camera: the sensor is '" + scenario.sensor.name +
+                                            "', not tag_images");
+    }
+    CheckSettings(scenario);
+    const auto why_not = hardware::WhyNotUsable(calibration, render::kRenderedSerial,
+                                                render::IntrinsicsOf(scenario), today);
+    if (why_not) throw InputError("--calibration", *why_not);
+    return MakeTagImages(scenario, world, calibration.X_WC);
+  };
+}
+
+std::unique_ptr<robot::Sensor> MakeSensor(const scenarios::Scenario& scenario,
+                                          const sim::World& world) {
+  if (scenario.sensor.name == kTagImages) return MakeTagImages(scenario, world);
+  return sim::MakeSensor(scenario, world);
+}
+
+}  // namespace sidestep::cli

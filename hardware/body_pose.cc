@@ -1,0 +1,229 @@
+#include "sidestep/hardware/body_pose.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "sidestep/hardware/planar_pose.h"
+
+namespace sidestep::hardware {
+namespace {
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+// A corner of a tag, where an ideal lens would have seen it, and what its two edges tell of it: the
+// rows of `edges` are their normals by their deviations, so that edges * (an error in px) are two
+// independent errors of deviation 1.
+struct Corner {
+  Eigen::Vector3d p_OQ;
+  Eigen::Vector2d ideal;
+  Eigen::Matrix2d edges;
+};
+
+struct Fit {
+  Pose X_CO;
+  double cost = std::numeric_limits<double>::infinity();  // squares in units of their deviations
+  double squares_px = 0;
+  Matrix6 information = Matrix6::Zero();
+};
+
+Eigen::Matrix3d Cross(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+Eigen::Quaterniond RotationBy(const Eigen::Vector3d& vector_rad) {
+  const double angle = vector_rad.norm();
+  if (!(angle > 0)) return Eigen::Quaterniond::Identity();
+  return Eigen::Quaterniond(Eigen::AngleAxisd(angle, vector_rad / angle));
+}
+
+Eigen::Vector3d RotationVector(const Eigen::Quaterniond& R) {
+  const Eigen::AngleAxisd turn(R.w() < 0 ? Eigen::Quaterniond(-R.coeffs()) : R);
+  return turn.angle() * turn.axis();
+}
+
+const TagDetection* Find(const std::vector<TagDetection>& seen, int id) {
+  const auto found =
+      std::find_if(seen.begin(), seen.end(), [&](const TagDetection& tag) { return tag.id == id; });
+  return found == seen.end() ? nullptr : &*found;
+}
+
+Eigen::Matrix<double, 3, 4> CornersOf(const BodyTag& tag) {
+  const double h = tag.size_m / 2;
+  Eigen::Matrix<double, 3, 4> p_OQ;
+  p_OQ.col(0) = tag.X_OT * Eigen::Vector3d(-h, h, 0);  // y is down
+  p_OQ.col(1) = tag.X_OT * Eigen::Vector3d(h, h, 0);
+  p_OQ.col(2) = tag.X_OT * Eigen::Vector3d(h, -h, 0);
+  p_OQ.col(3) = tag.X_OT * Eigen::Vector3d(-h, -h, 0);
+  return p_OQ;
+}
+
+// Gauss-Newton on position and rotation, damped where a step would not help.
+class Refinement {
+ public:
+  Refinement(const robot::CameraIntrinsics& camera, const std::vector<Corner>& corners,
+             const std::optional<RotationPrior>& prior)
+      : corners_(corners), focal_px_(camera.fx, camera.fy), prior_(prior) {}
+
+  Fit Run(const Pose& start) const {
+    Vector6 gradient;
+    Fit fit = Evaluate(start, &gradient);
+    double damping = 1e-6;
+    constexpr int kMostSteps = 30;
+    for (int step = 0; step < kMostSteps && std::isfinite(fit.cost); ++step) {
+      Matrix6 H = fit.information;
+      H.diagonal() *= 1 + damping;
+      const Vector6 delta = -H.ldlt().solve(gradient);
+      if (!delta.allFinite()) break;
+      Vector6 next_gradient;
+      const Pose moved(RotationBy(delta.tail<3>()) * fit.X_CO.rotation(),
+                       fit.X_CO.translation() + delta.head<3>());
+      const Fit next = Evaluate(moved, &next_gradient);
+      if (!(next.cost < fit.cost)) {
+        damping *= 10;
+        if (damping > 1e6) break;
+        continue;
+      }
+      const bool is_done = fit.cost - next.cost < 1e-10 * fit.cost;
+      fit = next;
+      gradient = next_gradient;
+      damping = std::max(1e-12, damping / 10);
+      if (is_done) break;
+    }
+    return fit;
+  }
+
+ private:
+  Fit Evaluate(const Pose& X_CO, Vector6* gradient) const {
+    Fit fit;
+    fit.X_CO = X_CO;
+    *gradient = Vector6::Zero();
+    double cost = 0;
+    for (const Corner& corner : corners_) {
+      const Eigen::Vector3d p_OQ_C = X_CO.Rotate(corner.p_OQ);
+      const Eigen::Vector3d p = p_OQ_C + X_CO.translation();
+      if (!(p.z() > 0)) return fit;  // behind the camera
+      const Eigen::Vector2d off_px = focal_px_.cwiseProduct(p.head<2>() / p.z() - corner.ideal);
+      Eigen::Matrix<double, 2, 6> J;
+      J.leftCols<3>() << 1 / p.z(), 0, -p.x() / (p.z() * p.z()), 0, 1 / p.z(),
+          -p.y() / (p.z() * p.z());
+      J.leftCols<3>() = focal_px_.asDiagonal() * J.leftCols<3>().eval();
+      J.rightCols<3>() = -J.leftCols<3>() * Cross(p_OQ_C);
+      fit.squares_px += off_px.squaredNorm();
+      const Eigen::Vector2d off = corner.edges * off_px;
+      J = corner.edges * J.eval();
+      cost += off.squaredNorm();
+      fit.information += J.transpose() * J;
+      *gradient += J.transpose() * off;
+    }
+    if (prior_) {
+      const double weight = 1 / (prior_->sigma_rad * prior_->sigma_rad);
+      const Eigen::Vector3d turn = RotationVector(X_CO.rotation() * prior_->R_CO.conjugate());
+      cost += weight * turn.squaredNorm();
+      gradient->tail<3>() += weight * turn;
+      fit.information.bottomRightCorner<3, 3>().diagonal().array() += weight;
+    }
+    fit.cost = cost;
+    return fit;
+  }
+
+  const std::vector<Corner>& corners_;
+  Eigen::Vector2d focal_px_;
+  std::optional<RotationPrior> prior_;
+};
+
+double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+// The area of a tag by its longest edge.
+double WidthOf(const Eigen::Matrix<double, 2, 4>& corners) {
+  double area = 0, longest = 0;
+  for (int k = 0; k < 4; ++k) {
+    const Eigen::Vector2d from = corners.col(k), to = corners.col((k + 1) % 4);
+    area += Cross(from, to) / 2;
+    longest = std::max(longest, (to - from).norm());
+  }
+  return std::abs(area) / longest;
+}
+
+// What the two edges at each corner tell of it.
+std::array<Eigen::Matrix2d, 4> EdgesOf(const Eigen::Matrix<double, 2, 4>& corners,
+                                       double edge_sigma_px) {
+  const double sigma_px = EdgeSigma(edge_sigma_px, WidthOf(corners));
+  std::array<Eigen::Matrix2d, 4> edges;
+  for (int k = 0; k < 4; ++k) {
+    const Eigen::Vector2d along = corners.col((k + 1) % 4) - corners.col(k);
+    const Eigen::RowVector2d normal(along.y(), -along.x());
+    const Eigen::RowVector2d row = normal / (along.norm() * sigma_px);
+    edges[static_cast<std::size_t>(k)].row(0) = row;
+    edges[static_cast<std::size_t>((k + 1) % 4)].row(1) = row;
+  }
+  return edges;
+}
+
+}  // namespace
+
+double EdgeSigma(double large_px, double width_px) {
+  constexpr double kNarrow_px = 60;
+  const double ratio = kNarrow_px / width_px;
+  return large_px * (1 + ratio * ratio);
+}
+
+std::optional<BodyPose> LocateBody(const robot::CameraIntrinsics& camera, const TaggedBody& body,
+                                   const std::vector<TagDetection>& seen, double edge_sigma_px,
+                                   const std::optional<RotationPrior>& prior) {
+  std::vector<Corner> corners;
+  const BodyTag* largest = nullptr;
+  Eigen::Matrix<double, 2, 4> corners_of_largest;
+  double largest_px = 0;
+  int num_tags = 0;
+  for (const BodyTag& tag : body.tags) {
+    const TagDetection* const found = Find(seen, tag.id);
+    if (found == nullptr) continue;
+    Eigen::Matrix<double, 2, 4> ideal;
+    for (int k = 0; k < 4; ++k) ideal.col(k) = robot::Unproject(camera, found->corners_px.col(k));
+    if (!ideal.allFinite()) return std::nullopt;
+    const Eigen::Matrix<double, 3, 4> p_OQ = CornersOf(tag);
+    const std::array<Eigen::Matrix2d, 4> edges = EdgesOf(found->corners_px, edge_sigma_px);
+    for (int k = 0; k < 4; ++k) {
+      corners.push_back({p_OQ.col(k), ideal.col(k), edges[static_cast<std::size_t>(k)]});
+    }
+    ++num_tags;
+    if (found->shortest_edge_px() > largest_px) {
+      largest = &tag;
+      largest_px = found->shortest_edge_px();
+      corners_of_largest = ideal;
+    }
+  }
+  if (largest == nullptr) return std::nullopt;
+  const Refinement refinement(camera, corners, prior);
+  const std::array<Pose, 2> starts = PosesOfSquare(corners_of_largest, largest->size_m);
+  const Pose X_TO = largest->X_OT.Inverse();
+  Fit best = refinement.Run(starts[0] * X_TO), other = refinement.Run(starts[1] * X_TO);
+  if (other.cost < best.cost) std::swap(best, other);
+  if (!std::isfinite(best.cost)) return std::nullopt;
+
+  BodyPose pose;
+  pose.X_CO = best.X_CO;
+  pose.num_tags = num_tags;
+  pose.reprojection_px = std::sqrt(best.squares_px / (2.0 * static_cast<double>(corners.size())));
+  pose.covariance = best.information.ldlt().solve(Matrix6::Identity());
+  constexpr double kSame_rad = 1e-3;
+  Vector6 apart;
+  apart << other.X_CO.translation() - best.X_CO.translation(),
+      RotationVector(other.X_CO.rotation() * best.X_CO.rotation().conjugate());
+  if (std::isfinite(other.cost) && apart.tail<3>().norm() > kSame_rad) {
+    pose.ambiguity = other.cost > 0 ? std::sqrt(best.cost / other.cost) : 1;
+    if (pose.ambiguity >= kAmbiguous) pose.covariance += apart * apart.transpose() / 4;
+  }
+  if (!pose.covariance.allFinite()) return std::nullopt;
+  return pose;
+}
+
+}  // namespace sidestep::hardware

@@ -1,0 +1,11 @@
+// Stands for realsense_camera.cc where librealsense2 is not there.
+#include "sidestep/core/input_error.h"
+#include "sidestep/hardware/realsense_camera.h"
+
+namespace sidestep::hardware {
+
+std::unique_ptr<robot::FrameSource> OpenRealSense(const RealSenseOptions&) {
+  throw InputError("--camera", "this build is without librealsense2");
+}
+
+}  // namespace sidestep::hardware
