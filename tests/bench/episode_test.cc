@@ -231,6 +231,34 @@ TEST_F(Episode, GivesFieldsThatOutliveTheirWorldAndSayTheSameAfterwards) {
   }
 }
 
+TEST_F(Episode, UnderTheProfileLabPlansForWhereThingsCanStrayWhileTheRobotStops) {
+  const auto field_under = [&](scenarios::SafetyProfile profile) {
+    scenario_.safety.profile = profile;
+    scenario_.safety.obstacle_acceleration_m_s2 = 2;
+    std::shared_ptr<const sdf::DistanceField> third;
+    EpisodeOptions options;
+    options.observe_field = [&](EpisodeTime t, const auto& field, const robot::WorldTruth*) {
+      if (std::abs(t.seconds() - 0.3) < 1e-6) third = field;
+    };
+    RunEpisode(scenario_, arm_, world_.Factory(), options);
+    return third;
+  };
+  const auto off = field_under(scenarios::SafetyProfile::kOff);
+  const auto observe = field_under(scenarios::SafetyProfile::kObserve);
+  const auto lab = field_under(scenarios::SafetyProfile::kLab);
+  const auto distance_m = [&](const sdf::DistanceField& field, double t_s) {
+    const Eigen::Vector3d p_WO =
+        PoseAt(scenario_.moving_obstacles.front(), EpisodeTime(t_s)).translation();
+    return field.Sample(p_WO - Eigen::Vector3d(0.22, 0, 0), EpisodeTime(t_s)).distance_m;
+  };
+  EXPECT_NEAR(distance_m(*off, 0.8), 0.1, 0.05);  // by cells of 0.05 m
+  for (const double t_s : {0.3, 0.4, 0.8}) {
+    EXPECT_EQ(distance_m(*observe, t_s), distance_m(*off, t_s)) << t_s;
+    const double stop_s = std::min(t_s - 0.3, 0.25);
+    EXPECT_NEAR(distance_m(*off, t_s) - distance_m(*lab, t_s), stop_s * stop_s, 1e-9) << t_s;
+  }
+}
+
 TEST_F(Episode, ToAGoalOnWhichSomethingStandsSaysThatEveryPlanCollides) {
   scenario_.moving_obstacles.clear();
   scenario_.static_boxes = {{"on the goal", Pose::Translation({0.6, 0.6, 0}), {0.3, 0.3, 0.2}}};

@@ -13,8 +13,8 @@
 
 namespace sidestep {
 
-/// The arm of hardware_single_table under the profile `lab`, and a box that moves at random: within
-/// what it is declared to do, or beyond.
+/// The arm of hardware_single_table under the profile `lab`, with a predictor that sees things
+/// turn, and a box that moves at random: within what it is declared to do, or beyond.
 enum class Envelope { kWithin, kBeyond };
 
 /// One episode: what happened.
