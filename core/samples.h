@@ -49,12 +49,12 @@ struct PredictedObject {
 
 /// One planning cycle.
 struct CycleRecord {
-  EpisodeTime t;                     ///< when the world was observed
-  EpisodeTime t_effect;              ///< when its plan took (or would have taken) effect
-  std::string status;                ///< of the planner
-  std::string reason;                ///< why there is no plan; else empty
-  bool accepted = false;             ///< whether the plan was given to the robot
-  int iterations = 0;                ///< of the optimiser
+  EpisodeTime t;          ///< when the world was observed
+  EpisodeTime t_effect;   ///< when its plan took (or would have taken) effect
+  std::string status;     ///< of the planner
+  std::string reason;     ///< why there is no plan; else empty
+  bool accepted = false;  ///< whether the plan was given to the robot
+  int iterations = 0;     ///< of the optimiser
   /// Its budget was spent before all was tried that there was to try: without one it would have
   /// gone on, and been late.
   bool cut_short = false;

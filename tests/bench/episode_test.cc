@@ -265,7 +265,8 @@ TEST_F(Episode, ToAGoalOnWhichSomethingStandsSaysThatEveryPlanCollides) {
   const EpisodeResult result = Run();
   EXPECT_EQ(result.outcome, Outcome::kPlannerFailed);
   EXPECT_EQ(result.reason, "none of " + std::to_string(result.recording.cycles.size()) +
-                               " plans was accepted; the last one: in_collision");
+                               " plans was accepted; the last one: in_collision, "
+                               "the goal is blocked when the horizon ends");
 }
 
 TEST_F(Episode, WithoutATruthIsUnjudgedAndStillSaysWhenTheGoalWasReached) {

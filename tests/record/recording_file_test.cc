@@ -28,7 +28,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-const SealedFormat kFormat = {"sidestep trace", 3};
+const SealedFormat kFormat = {"sidestep trace", kTraceVersion};
 constexpr std::size_t kHeadBytes = 512;
 
 // A folder of its own for each test, gone afterwards.
@@ -275,10 +275,11 @@ TEST_F(RecordingFile, SaysWhatIsWrongWithAFileThatIsNone) {
 }
 
 TEST_F(RecordingFile, NamesTheVersionItCannotRead) {
-  WriteSealedFile(Path("new.h5"), {"sidestep trace", 4}, {});
+  WriteSealedFile(Path("new.h5"), {"sidestep trace", kTraceVersion + 1}, {});
   EXPECT_EQ(Refusal(Path("new.h5")),
-            Path("new.h5") +
-                ": is of version 4 of the sidestep trace format; this program reads version 3");
+            Path("new.h5") + ": is of version " + std::to_string(kTraceVersion + 1) +
+                " of the sidestep trace format; this program reads version " +
+                std::to_string(kTraceVersion));
 }
 
 TEST_F(RecordingFile, IsRefusedWhereverItIsCut) {
