@@ -142,7 +142,10 @@ class Validation {
     const StopSignals signals;
     std::optional<double> memory_growth;
     const std::vector<bench::StudyRow> rows = RunCases(signals, memory_growth);
-    const bool is_whole = rows.size() == cases_.size();
+    const auto failed = std::count_if(rows.begin(), rows.end(), [](const bench::StudyRow& row) {
+      return row.outcome == bench::kFailed;
+    });
+    const bool is_whole = rows.size() == cases_.size() && failed == 0;
     const std::vector<bench::JudgedItem> items =
         bench::JudgeItems({subject_.scenario, rows, memory_growth}, is_whole);
     const bench::ValidationTitle title = TitleOf();
@@ -153,7 +156,8 @@ class Validation {
     Print("written          {0}/validation.md, {0}/validation.json, {0}/validation.csv\n",
           out.path());
     FinishOutput();
-    if (!is_whole) {
+    if (failed > 0) PrintError("validate: {} episodes could not be run\n", failed);
+    if (rows.size() < cases_.size()) {
       PrintError("validate: {} of {} episodes: it was stopped by {}\n", rows.size(), cases_.size(),
                  signals.first());
     }

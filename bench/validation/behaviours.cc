@@ -195,7 +195,8 @@ void SetBehaviour(const std::string& name, double speed_m_s, std::uint64_t seed,
   const scenarios::Scenario as_it_was = scenario;
   for (int draw = 0; draw < kMostDraws; ++draw) {
     scenario.moving_obstacles = as_it_was.moving_obstacles;
-    const Course course = DrawCourse(as_it_was, robot, random);
+    Course course = DrawCourse(as_it_was, robot, random);
+    course.least_way_m += 0.01 * draw;  // what is slow may have to come from further off
     const Motions motions =
         behaviour.make(course, speed_m_s, scenario.safety.obstacle_acceleration_m_s2);
     scenario.moving_obstacles.front().motion = motions.front();

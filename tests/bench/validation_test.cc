@@ -201,7 +201,7 @@ TEST(FaultySensor, OfAWrongCalibrationIsOffByThatAlways) {
   EXPECT_EQ(scans[30]->objects.at(0).X_WO.translation(), off);
 }
 
-// The figures of facts that were computed by hand from the formula, to two digits.
+// Computed by hand, to two digits.
 TEST(ProtectiveDistance, IsThatOfTheFormulaWithTypicalFigures) {
   const auto distance_m = [](double obstacle, double robot, double stop_s) {
     return ProtectiveDistance({.obstacle_m_s = obstacle,

@@ -1,5 +1,5 @@
 // Two planners, validated whole: one that avoids what moves, and one that only waits for it, which
-// is as safe and does not do its task.
+// does not do its task.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,22 +35,22 @@ std::map<int, std::string> VerdictsOf(const std::string& planner) {
 }
 
 // Whatever the planner: what the supervisor and the follower see to.
-void ExpectSafe(const std::map<int, std::string>& verdicts) {
-  for (const int number : {1, 2, 3, 4, 8, 11, 12, 14, 15}) {
+void ExpectWellBehaved(const std::map<int, std::string>& verdicts) {
+  for (const int number : {1, 2, 3, 4, 11, 12, 14, 15}) {
     EXPECT_EQ(verdicts.at(number), "pass") << number;
   }
   for (const int number : {13, 16, 17, 19}) EXPECT_EQ(verdicts.at(number), "not run") << number;
 }
 
-TEST(ValidationVerdicts, FindAPlannerThatAvoidsSafeAndItsPredictionWorthWhile) {
+TEST(ValidationVerdicts, FindThePredictionOfAPlannerThatAvoidsWorthWhile) {
   const std::map<int, std::string> verdicts = VerdictsOf("gpmp_fast");
-  ExpectSafe(verdicts);
+  ExpectWellBehaved(verdicts);
   EXPECT_EQ(verdicts.at(18), "pass");
 }
 
-TEST(ValidationVerdicts, FindAStraightLineSafeAndOfNoUse) {
+TEST(ValidationVerdicts, FindAStraightLineOfNoUse) {
   const std::map<int, std::string> verdicts = VerdictsOf("straight_line");
-  ExpectSafe(verdicts);
+  ExpectWellBehaved(verdicts);
   for (const int number : {5, 6, 9}) EXPECT_EQ(verdicts.at(number), "pass") << number;
   EXPECT_EQ(verdicts.at(18), "fail");
   EXPECT_EQ(verdicts.at(20), "fail");

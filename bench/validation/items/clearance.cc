@@ -13,16 +13,13 @@ namespace {
 
 constexpr double kNear_m = 0.05, kMostNear = 0.01, kCalibration_m = 0.01, kSigmas = 2;
 
-// The standard deviation of what the sensor says, in its worst direction.
-double SigmaOf(const record::Recording& recording) {
+// The standard deviation of where a scan says that things are, in its worst direction.
+double SigmaOf(const record::ObservationRecord& scan) {
   double most_m2 = 0;
-  for (const record::ObservationRecord& scan : recording.observations) {
-    for (const record::SeenObject& object : scan.objects) {
-      const Eigen::Matrix3d covariance = object.covariance.topLeftCorner<3, 3>();
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance,
-                                                                  Eigen::EigenvaluesOnly);
-      most_m2 = std::max(most_m2, solver.eigenvalues().maxCoeff());
-    }
+  for (const record::SeenObject& object : scan.objects) {
+    const Eigen::Matrix3d covariance = object.covariance.topLeftCorner<3, 3>();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
+    most_m2 = std::max(most_m2, solver.eigenvalues().maxCoeff());
   }
   return std::sqrt(most_m2);
 }
@@ -30,22 +27,26 @@ double SigmaOf(const record::Recording& recording) {
 Facts Measure(const ValidationRun& run) {
   const record::Recording& recording = run.result.recording;
   if (recording.truth.empty()) return {};
-  double least_m = std::numeric_limits<double>::infinity();
+  double least_m = std::numeric_limits<double>::infinity(), sure_m = least_m, sigma_m = 0;
   int moving = 0, near = 0;
+  auto scan = recording.observations.begin();
   for (const TruthSample& sample : recording.truth) {
+    for (; scan != recording.observations.end() && scan->t_arrival <= sample.t; ++scan) {
+      sigma_m = SigmaOf(*scan);
+    }
     const ControlSample* const tick = TickAt(recording, sample.t);
     if (tick == nullptr || !IsToldToMove(*tick)) continue;
     const double distance_m = DistanceToObstacles(run.scenario, run.robot, tick->q, sample.X_WO);
     least_m = std::min(least_m, distance_m);
+    sure_m = std::min(sure_m, distance_m - kSigmas * sigma_m - kCalibration_m);
     ++moving;
     near += distance_m < kNear_m ? 1 : 0;
   }
-  const double sigma_m = SigmaOf(recording);
   if (moving == 0) return {{"samples_in_motion", 0.0}, {"samples_near", 0.0}};
   return {{"samples_in_motion", static_cast<double>(moving)},
           {"samples_near", static_cast<double>(near)},
           {"lack_of_clearance_m", -least_m},
-          {"sure_lack_of_clearance_m", -(least_m - kSigmas * sigma_m - kCalibration_m)}};
+          {"sure_lack_of_clearance_m", -sure_m}};
 }
 
 bool IsJudged(const StudyRow& row) {
