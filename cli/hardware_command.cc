@@ -102,14 +102,16 @@ int DryRun(const HardwareOptions& options, const Problem& problem, const DataPat
 }
 
 // Sees with a camera from where it was calibrated to stand, if that is given.
-sim::SensorMaker SensorMakerFor(const HardwareOptions& options) {
+sim::SensorMaker SensorMakerFor(const HardwareOptions& options,
+                                const scenarios::Scenario& scenario) {
   if (options.calibration.empty()) return &MakeSensor;
-  return CalibratedSensors(hardware::ReadCalibration(options.calibration), TodayUtc());
+  return CalibratedCamera(scenario, hardware::ReadCalibration(options.calibration), TodayUtc());
 }
 
 int RunOnHardware(const HardwareOptions& options) {
   const DataPaths paths = FindDataPaths();
   Problem problem = LoadForHardware(options, paths);
+  const sim::SensorMaker make_sensor = SensorMakerFor(options, problem.scenario);
   if (options.dry_run) return DryRun(options, problem, paths);
   const bool lockstep = options.clock == "lockstep";
   if (!lockstep && problem.scenario.latency == scenarios::Latency::kNone) {
@@ -126,7 +128,7 @@ int RunOnHardware(const HardwareOptions& options) {
                      {.safety = sim::SafetyOf(problem.scenario, problem.robot),
                       .lockstep = lockstep,
                       .stops_at_once = [&] { return person.WantsItAtOnce(); }},
-                     SensorMakerFor(options));
+                     make_sensor);
   bench::EpisodeOptions episode;
   episode.clock = lockstep ? bench::EpisodeClock::kVirtual : bench::EpisodeClock::kRobot;
   episode.why_stop = [&] { return person.WhyStop(); };

@@ -79,18 +79,19 @@ hardware::TagSensorOptions TagSensorOptionsOf(const scenarios::Scenario& scenari
   return options;
 }
 
-sim::SensorMaker CalibratedSensors(const hardware::CameraCalibration& calibration,
-                                   const std::string& today) {
-  return [=](const scenarios::Scenario& scenario, const sim::World& world) {
-    if (scenario.sensor.name != kTagImages) {
-      throw InputError("--calibration", "is of a camera: the sensor is '" + scenario.sensor.name +
-                                            "', not tag_images");
-    }
-    CheckSettings(scenario);
-    const auto why_not = hardware::WhyNotUsable(calibration, render::kRenderedSerial,
-                                                render::IntrinsicsOf(scenario), today);
-    if (why_not) throw InputError("--calibration", *why_not);
-    return MakeTagImages(scenario, world, calibration.X_WC);
+sim::SensorMaker CalibratedCamera(const scenarios::Scenario& scenario,
+                                  const hardware::CameraCalibration& calibration,
+                                  const std::string& today) {
+  if (scenario.sensor.name != kTagImages) {
+    throw InputError("--calibration", "is of a camera: the sensor is '" + scenario.sensor.name +
+                                          "', not tag_images");
+  }
+  CheckSettings(scenario);
+  const auto why_not = hardware::WhyNotUsable(calibration, render::kRenderedSerial,
+                                              render::IntrinsicsOf(scenario), today);
+  if (why_not) throw InputError("--calibration", *why_not);
+  return [X_WC = calibration.X_WC](const scenarios::Scenario& of, const sim::World& world) {
+    return MakeTagImages(of, world, X_WC);
   };
 }
 

@@ -23,11 +23,13 @@ std::string MeaningOfSensor(const std::string& name);
 std::unique_ptr<robot::Sensor> MakeSensor(const scenarios::Scenario& scenario,
                                           const sim::World& world);
 
-/// The same, but a camera stands where it was calibrated to stand. The maker throws InputError for
-/// a sensor that is none, and for a camera that is not the calibrated one or was so too long ago.
+/// Makes the scenario's camera, which stands where it was calibrated to stand.
 /// @param today YYYY-MM-DD, UTC.
-sim::SensorMaker CalibratedSensors(const hardware::CameraCalibration& calibration,
-                                   const std::string& today);
+/// @throws InputError, blaming --calibration, for a sensor that is no camera, and a camera that is
+///   not the calibrated one or was calibrated too long ago.
+sim::SensorMaker CalibratedCamera(const scenarios::Scenario& scenario,
+                                  const hardware::CameraCalibration& calibration,
+                                  const std::string& today);
 
 /// What a sensor of tags has to know of a scenario: its moving bodies that bear tags, and, by the
 /// tags of static boxes, where the camera must see them.

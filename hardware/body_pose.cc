@@ -141,21 +141,21 @@ double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-// The area of a tag by its longest edge.
-double WidthOf(const Eigen::Matrix<double, 2, 4>& corners) {
+// The standard deviation of each edge of a tag.
+double EdgeSigmaOf(const Eigen::Matrix<double, 2, 4>& corners, double large_px) {
   double area = 0, longest = 0;
   for (int k = 0; k < 4; ++k) {
     const Eigen::Vector2d from = corners.col(k), to = corners.col((k + 1) % 4);
     area += Cross(from, to) / 2;
     longest = std::max(longest, (to - from).norm());
   }
-  return std::abs(area) / longest;
+  return EdgeSigma(large_px, std::abs(area) / longest, longest);
 }
 
 // What the two edges at each corner tell of it.
 std::array<Eigen::Matrix2d, 4> EdgesOf(const Eigen::Matrix<double, 2, 4>& corners,
                                        double edge_sigma_px) {
-  const double sigma_px = EdgeSigma(edge_sigma_px, WidthOf(corners));
+  const double sigma_px = EdgeSigmaOf(corners, edge_sigma_px);
   std::array<Eigen::Matrix2d, 4> edges;
   for (int k = 0; k < 4; ++k) {
     const Eigen::Vector2d along = corners.col((k + 1) % 4) - corners.col(k);
@@ -169,10 +169,9 @@ std::array<Eigen::Matrix2d, 4> EdgesOf(const Eigen::Matrix<double, 2, 4>& corner
 
 }  // namespace
 
-double EdgeSigma(double large_px, double width_px) {
-  constexpr double kNarrow_px = 60;
-  const double ratio = kNarrow_px / width_px;
-  return large_px * (1 + ratio * ratio);
+double EdgeSigma(double large_px, double width_px, double longest_px) {
+  const double small = 20 / width_px, aside = 0.35 * longest_px / width_px;
+  return large_px * (1 + small * small) * (1 + aside * aside * aside * aside);
 }
 
 std::optional<BodyPose> LocateBody(const robot::CameraIntrinsics& camera, const TaggedBody& body,

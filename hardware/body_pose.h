@@ -50,11 +50,13 @@ struct BodyPose {
 };
 
 /// The standard deviation of an edge of a tag across itself [px]. A corner is where two edges meet,
-/// so its own error is the larger the more acute it is. `large` is that of a tag seen large; one of
-/// this width (its area by its longest edge) whose modules are only a few pixels wide has
-/// large (1 + (60 px / width)^2): measured with rendered pictures (docs/hardware.md).
-inline constexpr double kEdgeSigma_px = 0.06;  ///< `large` of pictures without flaws
-double EdgeSigma(double large_px, double width_px);
+/// so its own error is the larger the more acute it is. `large` is that of a tag that is seen large
+/// and from the front; one of this width (its area by its longest edge) has
+///   large (1 + (20 px / width)^2) (1 + (0.35 longest / width)^4),
+/// the more the smaller its modules and the more it is seen from the side: measured with rendered
+/// pictures (docs/hardware.md).
+double EdgeSigma(double large_px, double width_px, double longest_px);
+inline constexpr double kEdgeSigma_px = 0.062;  ///< `large` of pictures without flaws
 
 /// The pose that explains the edges of all tags of a body best, in pixels: a joint least-squares
 /// fit from either solution of the largest tag (hardware/planar_pose.h).

@@ -88,6 +88,18 @@ TEST_F(Calibrate, FindsWhereARenderedCameraStands) {
   EXPECT_LT(found.X_WC.rotation().angularDistance(truth_.rotation()), 0.1 * kDegree);
   EXPECT_LT(found.held_out_rms_m, 0.002);
 
+  // It was found with another lens than the scenario's camera has, and not for this sensor.
+  const auto run = [&](const std::string& seen_by) {
+    return RunProgram({SIDESTEP_PROGRAM, "hardware", "run", "hardware_single_table", "--set",
+                       "seen_by=" + seen_by, "--calibration",
+                       (folder_.path() / "found.yaml").string()});
+  };
+  EXPECT_EQ(run("camera").err,
+            "--calibration: the camera has another lens or picture size than when it was "
+            "calibrated\n");
+  EXPECT_EQ(run("truth").err,
+            "--calibration: is of a camera: the sensor is 'occupancy', not tag_images\n");
+
   const Finished other = Run("6");
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_EQ(other.err, "views: show the tag 0 times, needed are 20\n");

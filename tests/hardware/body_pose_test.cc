@@ -131,7 +131,7 @@ TEST_F(BodyPose, HasErrorsOfItsCovariance) {
         area += (a.x() * b.y() - a.y() * b.x()) / 2;
         longest = std::max(longest, (b - a).norm());
       }
-      Disturb(EdgeSigma(kSigma_px, std::abs(area) / longest), random, &tag);
+      Disturb(EdgeSigma(kSigma_px, std::abs(area) / longest, longest), random, &tag);
     }
     const auto pose = LocateBody(Camera(), body, seen, kSigma_px);
     ASSERT_TRUE(pose);
