@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "sidestep/cli/hardware_world.h"
+#include "sidestep/cli/sensors.h"
 #include "sidestep/core/number_text.h"
 #include "sidestep/sim/fci/fault_script.h"
 #include "sidestep/sim/fci/panda_world.h"
@@ -102,7 +103,8 @@ bench::WorldFactory ServedWorlds(const DataPaths& paths, const std::string& faul
     owner->server = std::make_unique<ServedPanda>(scenario, robot, paths.models, script);
     const bench::WorldFactory make = HardwareWorlds(
         paths, owner->server->address(),
-        {.safety = sim::SafetyOf(scenario, robot), .lockstep = true, .stops_at_once = {}});
+        {.safety = sim::SafetyOf(scenario, robot), .lockstep = true, .stops_at_once = {}},
+        &MakeSensor);
     bench::EpisodeWorld world = make(scenario, robot);
     owner->world = std::exchange(world.owner, owner);
     return world;
