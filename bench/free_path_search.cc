@@ -36,8 +36,9 @@ FreePath SearchFreePath(const scenarios::Scenario& scenario, const robot::RobotM
       request.initial = planner::MakeDetour(request, random);
     }
     ++best.guesses;
-    const std::optional<Trajectory> motion = planner->Plan(request).trajectory;
-    if (!motion) continue;
+    const planner::PlanResult result = planner->Plan(request);
+    const std::optional<Trajectory>& motion = result.trajectory;
+    if (!motion || result.status == planner::PlanStatus::kShortOfGoal) continue;
     const EpisodeTime begin(0), end(motion->t_s(request.num_states - 1) + kAfterGoal_s);
     const double clearance_m =
         planner::MeasureClearance(robot, field, *motion, begin, begin, end, kJudgeStep_s).least_m;

@@ -54,7 +54,8 @@ class TaskBench {
     measured.cpu_s = std::min(measured.cpu_s, ThreadCpuSeconds() - begin_s);
     measured.plan = std::move(plan);
     measured.has_run = true;
-    if (!measured.plan.trajectory) return;
+    const bool reaches = measured.plan.status != planner::PlanStatus::kShortOfGoal;
+    if (!measured.plan.trajectory || !reaches) return;
     const EpisodeTime end =
         request.start + HorizonOffset((request.num_states - 1) * request.step_s);
     const sdf::DistanceField& truth = task_.truth ? *task_.truth : *request.field;
