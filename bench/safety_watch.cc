@@ -10,6 +10,7 @@ sdf::WorldModelOptions OptionsFor(const scenarios::Scenario& scenario, const Epi
   sdf::WorldModelOptions options = MakeWorldModelOptions(scenario, scenario.grid.cell_m, world);
   options.knowledge = sdf::Knowledge::kPrediction;
   options.growth_sigmas = options.stray_s = 0;
+  options.remembers_lost = true;
   return options;
 }
 

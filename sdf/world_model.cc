@@ -147,7 +147,8 @@ class PredictedWorld final : public MappedWorld {
         predictor_(MakePredictor(options.predictor)),
         tracker_(options.grid, {.max_distance_m = options.max_distance_m + LargestGrowth(options),
                                 .convention = options.convention}),
-        named_objects_(options.grid.cell_m, options.max_distance_m + LargestGrowth(options)) {}
+        named_objects_(options.grid.cell_m, options.max_distance_m + LargestGrowth(options),
+                       options.remembers_lost ? std::optional(options.grid) : std::nullopt) {}
 
   std::vector<PredictedObject> DescribeObjects(
       const std::vector<EpisodeTime>& times) const override {

@@ -44,6 +44,8 @@ struct WorldModelOptions {
   /// [m/s^2], reckoned for at most so long [s]: by then one has looked again, or has stopped. What
   /// is near already is not thought to be touched, but to be left.
   double stray_m_s2 = 0, stray_s = 0;
+  /// A named object that was seen last inside the grid is not forgotten: it is somewhere near.
+  bool remembers_lost = false;
   GridSpec grid;              ///< in W
   double max_distance_m = 0;  ///< fields are clamped here: safety margin + largest sphere
   /// Of fields made from cells; full_knowledge has the true shapes of what moves.

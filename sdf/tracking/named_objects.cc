@@ -1,6 +1,7 @@
 #include "sidestep/sdf/tracking/named_objects.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "sidestep/core/shape.h"
@@ -30,8 +31,14 @@ void NamedObjects::Update(const std::vector<ObjectObservation>& objects, Episode
       object.history.erase(object.history.begin());
     }
   }
-  std::erase_if(tracks_,
-                [&](const auto& entry) { return t - entry.second.object.latest().t > kPatience; });
+  std::erase_if(tracks_, [&](const auto& entry) { return IsForgotten(entry.second.object, t); });
+}
+
+bool NamedObjects::IsForgotten(const TrackedObject& object, EpisodeTime t) const {
+  if (t - object.latest().t <= kPatience) return false;
+  if (!keep_within_) return true;
+  const std::array<int, 3> cell = keep_within_->CellOf(object.latest().p_WO);
+  return !keep_within_->Contains(cell[0], cell[1], cell[2]);
 }
 
 std::vector<NamedObject> NamedObjects::Objects() const {

@@ -46,6 +46,17 @@ TEST(NamedObjects, AreForgottenASecondAfterTheirLastSightAndKeepTheirId) {
   EXPECT_EQ(objects.Objects()[0].object->id, -1);
 }
 
+TEST(NamedObjects, ThatWereSeenLastWithinWhatIsKeptAreNotForgotten) {
+  const GridSpec room{Eigen::Vector3d::Constant(-0.95), 0.1, {20, 20, 20}};  // -1 to 1 m
+  NamedObjects objects(0.05, 0.2, room);
+  objects.Update({Seen("inside", 0, Pose::Translation({0.99, 0, 0})),
+                  Seen("outside", 0, Pose::Translation({1.01, 0, 0}))},
+                 EpisodeTime(0));
+  objects.Update({}, EpisodeTime(100));
+  ASSERT_EQ(objects.Objects().size(), 1u);
+  EXPECT_EQ(objects.Objects()[0].object->latest().p_WO.x(), 0.99);
+}
+
 Scan Tags(double t_s) {
   Scan scan;
   scan.t = EpisodeTime(t_s);
