@@ -72,15 +72,16 @@ add_custom_target(unit_tests)
 option(SIDESTEP_WHOLE_TEST_PROGRAMS "ctest runs test programs, not each of their cases" OFF)
 
 # sidestep_test(<folder>/<name>_test [SOURCES <further file>...] DEPENDS <target>...
-#               [SLOW | THREADED])
+#               [SLOW | HEAVY | THREADED])
 #
 # Builds tests/<folder>/<name>_test.cc; ctest runs each of its cases, or the whole program at once with
-# SIDESTEP_WHOLE_TEST_PROGRAMS. SLOW cases carry the label
-# "slow", which `./dev test` leaves out and `./dev test --all` runs. THREADED ones, which start
+# SIDESTEP_WHOLE_TEST_PROGRAMS. SLOW cases carry the label "slow", which `./dev test` leaves out and
+# `./dev test --all` runs. HEAVY ones, which take long under sanitizers, carry the label "heavy", and
+# `./dev test --sanitize` leaves them out. THREADED ones, which start
 # threads, carry the label "threaded", and `./dev test --all` runs them under the thread sanitizer.
-# Other cases in the folder of a module carry the label "unit".
+# Cases in the folder of a module carry the label "unit", or "unit_threaded".
 function(sidestep_test path)
-  cmake_parse_arguments(ARG "SLOW;THREADED" "" "SOURCES;DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "SLOW;HEAVY;THREADED" "" "SOURCES;DEPENDS" ${ARGN})
   string(REPLACE "/" "_" target ${path})
   add_executable(${target} ${PROJECT_SOURCE_DIR}/tests/${path}.cc ${ARG_SOURCES})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
@@ -93,13 +94,23 @@ function(sidestep_test path)
   set(properties TIMEOUT 600)
   if(ARG_SLOW)
     set(properties TIMEOUT 1800 LABELS slow)
-  elseif(ARG_THREADED)
-    list(APPEND properties LABELS threaded)
-    add_dependencies(threaded_tests ${target})
-  elseif(TARGET sidestep::${folder})
-    list(APPEND properties LABELS unit)
+  elseif(ARG_HEAVY)
+    list(APPEND properties LABELS heavy)
+  else()
+    set(label)
+    if(TARGET sidestep::${folder})
+      set(label unit)
+    endif()
+    if(ARG_THREADED)
+      list(APPEND label threaded)
+      add_dependencies(threaded_tests ${target})
+    endif()
+    list(JOIN label _ label)  # one word: lists of labels do not survive the discovery of cases
+    if(label)
+      list(APPEND properties LABELS ${label})
+    endif()
   endif()
-  if(TARGET sidestep::${folder} AND NOT ARG_SLOW)
+  if(TARGET sidestep::${folder} AND NOT ARG_SLOW AND NOT ARG_HEAVY)
     add_dependencies(unit_tests ${target})
   endif()
   if(SIDESTEP_WHOLE_TEST_PROGRAMS)

@@ -18,8 +18,8 @@ class ArmCapsules {
   /// In the world: the axis from a to b, and the radius.
   struct Placed {
     Eigen::Vector3d a, b;
-    double radius_m;
-    bool moves;  ///< not one of the base
+    double radius_m = 0;
+    bool moves = false;  ///< not one of the base
   };
   using All = std::array<Placed, kMax>;
 
