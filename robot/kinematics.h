@@ -77,10 +77,14 @@ class Kinematics {
 
   const std::vector<KinematicRow>& rows() const { return rows_; }
   /// @param link the joint that carries it; -1: the base.
-  const LinkOnRow& link(int link) const { return links_[static_cast<std::size_t>(link + 1)]; }
+  const LinkOnRow& link(int link) const {
+    const int entry = link + 1;
+    return links_[static_cast<std::size_t>(entry)];
+  }
   /// The rows that move what stands on `row`, from the base on; none for -1.
   const std::vector<int>& movers(int row) const {
-    return movers_[static_cast<std::size_t>(row + 1)];
+    const int entry = row + 1;
+    return movers_[static_cast<std::size_t>(entry)];
   }
 
  private:

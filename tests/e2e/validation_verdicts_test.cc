@@ -24,7 +24,8 @@ std::map<int, std::string> VerdictsOf(const std::string& planner) {
                   "--seeds", "1", "--out", folder.path()});
   std::ifstream stream(folder.path() / "validation.json");
   std::map<int, std::string> verdicts;
-  for (const auto& item : nlohmann::json::parse(stream)["items"]) {
+  const nlohmann::json report = nlohmann::json::parse(stream);
+  for (const auto& item : report["items"]) {
     verdicts[item["number"]] = item["verdict"];
     std::cout << item["number"] << " " << item["verdict"] << ": " << item["evidence"] << "\n";
   }
