@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -26,6 +24,7 @@
 #include "sidestep/bench/validation/protective_distance.h"
 #include "sidestep/bench/validation/report.h"
 #include "sidestep/bench/validation/timing.h"
+#include "tests/support/bytes_of.h"
 
 namespace sidestep::bench {
 namespace {
@@ -422,10 +421,7 @@ TEST(ValidationItems, ThatHoldSoFarDoNotPassBeforeTheEnd) {
   }
 }
 
-std::string Page(const std::string& name) {
-  std::ifstream stream(SIDESTEP_SOURCE_DIR "/docs/" + name);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
+std::string Page(const std::string& name) { return BytesOf(SIDESTEP_SOURCE_DIR "/docs/" + name); }
 
 // What is required stands on the page, so that nobody has to run it to know.
 TEST(ValidationItems, AreInTheDocumentation) {

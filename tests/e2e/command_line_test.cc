@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/bytes_of.h"
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
@@ -388,11 +389,6 @@ TEST(Audit, TakesSettingsAndTellsOfNoErrorWhereThereIsNone) {
   EXPECT_THAT(finished.out, ::testing::Not(HasSubstr("inf")));
 }
 
-std::string TextOf(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 // A study whose episodes take a moment: no optimiser, and short.
 Finished QuickStudy(const std::filesystem::path& out, std::vector<std::string> further,
                     const std::vector<std::string>& environment = {}) {
@@ -414,13 +410,13 @@ TEST(Study, ThatWasInterruptedGoesOnWhereItWas) {
   };
   study("2", "whole", false);
   study("1", "parts", false);
-  const std::string first = TextOf(folder.path() / "parts/study.jsonl");
+  const std::string first = BytesOf(folder.path() / "parts/study.jsonl");
   std::filesystem::resize_file(folder.path() / "parts/study.jsonl", first.size() - 5);
   study("2", "parts", true);
-  EXPECT_EQ(TextOf(folder.path() / "parts/study.csv"), TextOf(folder.path() / "whole/study.csv"));
+  EXPECT_EQ(BytesOf(folder.path() / "parts/study.csv"), BytesOf(folder.path() / "whole/study.csv"));
   // What was there has not been run again: its lines stand where they stood.
   const std::string kept = first.substr(0, first.find('\n', first.find('\n') + 1));
-  EXPECT_THAT(TextOf(folder.path() / "parts/study.jsonl"), StartsWith(kept));
+  EXPECT_THAT(BytesOf(folder.path() / "parts/study.jsonl"), StartsWith(kept));
 
   const Finished again = QuickStudy(folder.path() / "parts", {});
   EXPECT_EQ(again.exit_code, 2);
@@ -444,10 +440,10 @@ TEST(Study, GoesOnAfterAChangedCommentButNotAfterAChangedRobotOrScenario) {
     return QuickStudy(folder.path() / "out", further, {"SIDESTEP_DATA_DIR=" + data.string()});
   };
   EXPECT_EQ(study(false).exit_code, 0);
-  const std::string log = TextOf(folder.path() / "out/study.jsonl");
+  const std::string log = BytesOf(folder.path() / "out/study.jsonl");
   append("scenarios/walkway_behaviours.yaml", "# another comment\n");
   EXPECT_EQ(study(true).exit_code, 0);
-  EXPECT_EQ(TextOf(folder.path() / "out/study.jsonl"), log);
+  EXPECT_EQ(BytesOf(folder.path() / "out/study.jsonl"), log);
 
   append("models/panda/robot.yaml", "# another robot, for all we know\n");
   const Finished robot = study(true);
@@ -467,7 +463,7 @@ TEST(Study, KeepsTracesAndSaysWhatRunsAnEpisodeAgainToTheBit) {
       QuickStudy(folder.path() / "study", {"--set", "behaviour=random_walk", "--knowledge",
                                            "static", "--episodes", "2", "--traces", "all"});
   EXPECT_EQ(finished.exit_code, 0) << finished.err;
-  std::istringstream lines(TextOf(folder.path() / "study/study.csv"));
+  std::istringstream lines(BytesOf(folder.path() / "study/study.csv"));
   std::string line;
   std::getline(lines, line);
   EXPECT_THAT(line, AllOf(HasSubstr("drawn.delay_s,drawn.speed_factor"),
@@ -478,7 +474,7 @@ TEST(Study, KeepsTracesAndSaysWhatRunsAnEpisodeAgainToTheBit) {
     const std::size_t at = line.find("traces/");
     ASSERT_NE(at, std::string::npos) << line;
     const std::size_t comma = line.find(',', at);
-    const std::string trace = TextOf(folder.path() / "study" / line.substr(at, comma - at));
+    const std::string trace = BytesOf(folder.path() / "study" / line.substr(at, comma - at));
     const std::string command = line.substr(comma + 1);
     ASSERT_THAT(command, StartsWith("sidestep run walkway_behaviours "));
     // As it stands in the table: each row has a folder of its own to go into.
@@ -486,7 +482,7 @@ TEST(Study, KeepsTracesAndSaysWhatRunsAnEpisodeAgainToTheBit) {
                                     folder.path().string());
     EXPECT_EQ(run.exit_code, 0) << run.err;
     const fs::path again = folder.path() / command.substr(command.find("--out ") + 6);
-    EXPECT_TRUE(TextOf(again / "trace.h5") == trace) << command;
+    EXPECT_TRUE(BytesOf(again / "trace.h5") == trace) << command;
     ++num_rows;
     EXPECT_NE(trace, last_trace);
     last_trace = trace;
@@ -503,15 +499,15 @@ TEST(Study, MakesTracesOfFailuresAfterwards) {
   std::vector<std::string> further = {"--set", "behaviour=stop", "--episodes", "2"};
   EXPECT_EQ(QuickStudy(folder.path(), further).exit_code, 0);
   EXPECT_EQ(traces(), 0);
-  const std::string log = TextOf(folder.path() / "study.jsonl");
+  const std::string log = BytesOf(folder.path() / "study.jsonl");
   further.insert(further.end(), {"--resume", "--traces", "failures"});
   const Finished finished = QuickStudy(folder.path(), further);
   EXPECT_EQ(finished.exit_code, 0);
-  const std::string csv = TextOf(folder.path() / "study.csv");
+  const std::string csv = BytesOf(folder.path() / "study.csv");
   std::ptrdiff_t failures = 0;
   for (std::size_t at = 0; (at = csv.find(",traces/", at)) != std::string::npos; ++at) ++failures;
   EXPECT_EQ(traces(), failures);
-  EXPECT_EQ(TextOf(folder.path() / "study.jsonl"), log);
+  EXPECT_EQ(BytesOf(folder.path() / "study.jsonl"), log);
 }
 
 TEST(Study, MakesARowOfACombinationThatIsRefusedAndGoesOn) {
@@ -519,7 +515,7 @@ TEST(Study, MakesARowOfACombinationThatIsRefusedAndGoesOn) {
   const Finished finished =
       QuickStudy(folder.path(), {"--set", "behaviour=speed_up_2", "--speed", "1,90"});
   EXPECT_EQ(finished.exit_code, 1);
-  const std::string csv = TextOf(folder.path() / "study.csv");
+  const std::string csv = BytesOf(folder.path() / "study.csv");
   EXPECT_THAT(csv, HasSubstr("failed,--speed: is above the max_speed_m_s of 'hsr'"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
   EXPECT_THAT(finished.out, HasSubstr("| speed_m_s | episodes |"));
@@ -531,13 +527,13 @@ TEST(Study, ThatIsToHaveLessThanItHasIsRefused) {
     return QuickStudy(folder.path(), {"--set", "behaviour=stop", "--episodes", episodes, flag});
   };
   EXPECT_EQ(study("2", "--traces=none").exit_code, 0);
-  const std::string csv = TextOf(folder.path() / "study.csv");
+  const std::string csv = BytesOf(folder.path() / "study.csv");
   const Finished fewer = study("1", "--resume");
   EXPECT_EQ(fewer.exit_code, 2);
   EXPECT_THAT(fewer.err,
               AllOf(HasSubstr("study.jsonl: holds an episode that is not asked for"),
                     HasSubstr("seed 2): ask for it too, choose another folder by --out")));
-  EXPECT_EQ(TextOf(folder.path() / "study.csv"), csv);
+  EXPECT_EQ(BytesOf(folder.path() / "study.csv"), csv);
 }
 
 TEST(Study, SaysOnItsPageWhatItIsOf) {
@@ -545,7 +541,7 @@ TEST(Study, SaysOnItsPageWhatItIsOf) {
   const Finished finished = QuickStudy(
       folder.path(), {"--set", "behaviour=stop", "--knowledge", "static,prediction", "-j", "1"});
   EXPECT_EQ(finished.exit_code, 0) << finished.err;
-  EXPECT_THAT(TextOf(folder.path() / "study.md"),
+  EXPECT_THAT(BytesOf(folder.path() / "study.md"),
               AllOf(StartsWith("# Study of walkway_behaviours\n"),
                     HasSubstr("- varied: knowledge = static, prediction\n"),
                     HasSubstr("- fixed: behaviour = stop\n"),
@@ -559,9 +555,9 @@ TEST(Study, VariesKeysTogetherAndSetsTheSameEpisodesBesideEachOther) {
       folder.path(), {"--vary", "behaviour=stop,turn", "--vary",
                       "replanning.latency_s/replanning.rate_hz=0.1/10,0.02/50", "--episodes", "2"});
   EXPECT_EQ(finished.exit_code, 0) << finished.err;
-  EXPECT_THAT(TextOf(folder.path() / "study.csv"),
+  EXPECT_THAT(BytesOf(folder.path() / "study.csv"),
               HasSubstr("--set replanning.latency_s=0.02 --set replanning.rate_hz=50"));
-  EXPECT_THAT(TextOf(folder.path() / "study.md"),
+  EXPECT_THAT(BytesOf(folder.path() / "study.md"),
               AllOf(HasSubstr("| behaviour | 0.1/10 | 0.02/50 |"),
                     HasSubstr("\n| turn | 0.02/50 | 2 |"), HasSubstr("\n| all | 0.1/10 | 4 |")));
 }
@@ -602,7 +598,7 @@ class OwnScenarios : public ::testing::Test {
     return folder_.path() / "scenarios" / (name + ".yaml");
   }
   void Write(const std::string& name, const std::string& old_text, const std::string& new_text) {
-    std::string text = TextOf(SIDESTEP_SOURCE_DIR "/scenarios/hsr_walkway.yaml");
+    std::string text = BytesOf(SIDESTEP_SOURCE_DIR "/scenarios/hsr_walkway.yaml");
     text.replace(text.find(old_text), old_text.size(), new_text);
     std::ofstream(Path(name)) << text;
   }
@@ -670,7 +666,7 @@ TEST(Run, TellsWhatWasTouchedAndTheDwellThatWasAskedFor) {
   const Finished with = run("0.1");
   EXPECT_THAT(with.out, AllOf(HasSubstr("outcome          collision with hsr\n"),
                               HasSubstr("dwell of 0.1 s")));
-  EXPECT_EQ(nlohmann::json::parse(TextOf(folder.path() / "result.json")).at("touched"), "hsr");
+  EXPECT_EQ(nlohmann::json::parse(BytesOf(folder.path() / "result.json")).at("touched"), "hsr");
   EXPECT_THAT(Sidestep({"compare", folder.path()}).out, HasSubstr("collision with hsr"));
   EXPECT_THAT(run("0").out, ::testing::Not(HasSubstr("dwell")));
 }
@@ -686,7 +682,7 @@ TEST(Compare, TellsWhichRunsWouldHaveTripped) {
     return out;
   };
   const auto trips = [](const std::string& out) {
-    return nlohmann::json::parse(TextOf(out + "/result.json")).at("would_trip");
+    return nlohmann::json::parse(BytesOf(out + "/result.json")).at("would_trip");
   };
   const std::string quick = run("quick", "1"), slow = run("slow", "20");
   EXPECT_EQ(trips(quick), nlohmann::json::array({"acceleration_use", "commanded_torque_rate_use",

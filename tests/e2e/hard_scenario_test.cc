@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "sidestep/record/recording_file.h"
+#include "tests/support/bytes_of.h"
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
@@ -31,18 +31,13 @@ std::vector<std::string> ScenarioNames() {
   return names;
 }
 
-std::string Slurp(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 // "# expect: OUTCOME" or "# expect: OUTCOME: PART OF THE REASON".
 struct Expected {
   std::string outcome, reason;
 };
 
 Expected ExpectedOf(const fs::path& scenario) {
-  const std::string key = "# expect: ", text = Slurp(scenario);
+  const std::string key = "# expect: ", text = BytesOf(scenario);
   const std::string line = text.substr(0, text.find('\n'));
   EXPECT_EQ(line.substr(0, key.size()), key) << scenario;
   const std::string expected = line.substr(key.size());
@@ -88,7 +83,7 @@ TEST_P(HardScenario, EndsWithItsOutcomeReasonAndTrace) {
     EXPECT_EQ(finished.err, "");
   }
 
-  const auto result = nlohmann::json::parse(Slurp(out_ / "result.json"));
+  const auto result = nlohmann::json::parse(BytesOf(out_ / "result.json"));
   std::string told = expected_.outcome;
   if (!result["touched"].is_null()) {
     told += (is_aborted_ ? ", touched " : " with ") + result["touched"].get<std::string>();
@@ -123,7 +118,7 @@ TEST_P(HardScenario, IsARowOfAStudy) {
   const Finished finished =
       Sidestep({"study", scenario_.string(), "--knowledge", "prediction", "--out", out_.string()});
   EXPECT_EQ(finished.exit_code, is_aborted_ ? 1 : 0) << finished.err;
-  const std::string csv = Slurp(out_ / "study.csv");
+  const std::string csv = BytesOf(out_ / "study.csv");
   EXPECT_THAT(csv, HasSubstr("," + expected_.outcome + ","));
   EXPECT_THAT(csv, HasSubstr(expected_.reason));
 }

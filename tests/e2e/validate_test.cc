@@ -5,12 +5,11 @@
 #include <signal.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "tests/support/bytes_of.h"
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
@@ -18,11 +17,6 @@ namespace sidestep {
 namespace {
 
 using ::testing::HasSubstr;
-
-std::string Slurp(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 Finished Validate(const std::string& planner, std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(),
@@ -38,9 +32,9 @@ TEST(Validate, RunsACaseOfAReportAgainToTheSameBytes) {
     ASSERT_EQ(finished.exit_code, 0) << finished.err;
     EXPECT_THAT(finished.out, HasSubstr("tool_speed_m_s"));
   }
-  const std::string trace = Slurp(folder.path() / "one" / "trace.h5");
+  const std::string trace = BytesOf(folder.path() / "one" / "trace.h5");
   EXPECT_GT(trace.size(), 10000u);
-  EXPECT_TRUE(trace == Slurp(folder.path() / "two" / "trace.h5"));
+  EXPECT_TRUE(trace == BytesOf(folder.path() / "two" / "trace.h5"));
 }
 
 TEST(Validate, RunsACaseAtARobotServerOfItsOwn) {
@@ -48,7 +42,7 @@ TEST(Validate, RunsACaseAtARobotServerOfItsOwn) {
   const Finished finished = Validate(
       "straight_line", {"--only", "fault:cross:0.1:user_stop:wire:1", "--out", folder.path()});
   EXPECT_EQ(finished.exit_code, 0) << finished.err;
-  const auto json = nlohmann::json::parse(Slurp(folder.path() / "result.json"));
+  const auto json = nlohmann::json::parse(BytesOf(folder.path() / "result.json"));
   EXPECT_EQ(json["outcome"], "aborted");
   EXPECT_THAT(json["reason"].get<std::string>(), HasSubstr("the user stop is pressed"));
 }
@@ -59,12 +53,12 @@ TEST(Validate, KeepsWhatWasDoneWhenItIsInterrupted) {
       RunProgram({"timeout", "-s", "INT", "6", SIDESTEP_PROGRAM, "validate", "straight_line",
                   "--scenario", "hardware_single_table", "--out", folder.path()});
   EXPECT_THAT(finished.err, HasSubstr("it was stopped by Ctrl-C"));
-  const auto json = nlohmann::json::parse(Slurp(folder.path() / "validation.json"));
+  const auto json = nlohmann::json::parse(BytesOf(folder.path() / "validation.json"));
   EXPECT_LT(json["episodes"], json["episodes_asked"]);
   for (const auto& item : json["items"]) {
     EXPECT_NE(item["verdict"], "pass") << item["name"] << ": nothing is settled yet";
   }
-  EXPECT_THAT(Slurp(folder.path() / "validation.md"), HasSubstr("# Validation of straight_line"));
+  EXPECT_THAT(BytesOf(folder.path() / "validation.md"), HasSubstr("# Validation of straight_line"));
 }
 
 }  // namespace

@@ -6,13 +6,13 @@
 #include <atomic>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "tests/support/bytes_of.h"
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
@@ -24,13 +24,6 @@ using Json = nlohmann::json;
 
 constexpr double kRounded = 0.501;  // of the last digit that is printed
 
-std::string Slurp(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
 class Walkway : public ::testing::Test {
  protected:
   // Runs an episode into `folder_/name` and reads its result.json.
@@ -40,7 +33,7 @@ class Walkway : public ::testing::Test {
     command.insert(command.end(), options.begin(), options.end());
     const Finished finished = RunProgram(command, {}, folder_.string());
     EXPECT_EQ(finished.exit_code, 0) << finished.err;
-    return Json::parse(Slurp(folder_ / name / "result.json"), nullptr, false);
+    return Json::parse(BytesOf(folder_ / name / "result.json"), nullptr, false);
   }
 
   const TemporaryFolder temporary_;
@@ -69,7 +62,7 @@ std::vector<std::string> CellsOf(const std::string& line) {
 }
 
 std::vector<Promise> Promises() {
-  std::istringstream page(Slurp(SIDESTEP_SOURCE_DIR "/docs/walkway.md"));
+  std::istringstream page(BytesOf(SIDESTEP_SOURCE_DIR "/docs/walkway.md"));
   std::string line;
   while (std::getline(page, line) && line.rfind("| speed [m/s] |", 0) != 0) {
   }
@@ -137,7 +130,7 @@ TEST_F(Walkway, EqualRunsGiveEqualBytesUnderAnyLoad) {
   stop = true;
   for (std::thread& thread : load) thread.join();
 
-  EXPECT_EQ(Slurp(folder_ / "first/trace.h5"), Slurp(folder_ / "second/trace.h5"));
+  EXPECT_EQ(BytesOf(folder_ / "first/trace.h5"), BytesOf(folder_ / "second/trace.h5"));
   EXPECT_TRUE(first.contains("wall_clock"));
   first.erase("wall_clock");
   second.erase("wall_clock");
@@ -170,7 +163,7 @@ TEST_F(Walkway, PrintsTheResultAsJsonWhenAsked) {
   const Finished finished =
       RunProgram({SIDESTEP_PROGRAM, "run", "hsr_walkway", "--json", "--out", folder_.string()});
   EXPECT_EQ(finished.exit_code, 0);
-  EXPECT_EQ(finished.out, Slurp(folder_ / "result.json"));
+  EXPECT_EQ(finished.out, BytesOf(folder_ / "result.json"));
 }
 
 }  // namespace

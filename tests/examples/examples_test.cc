@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/bytes_of.h"
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
@@ -18,11 +18,6 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
 const fs::path kExamples = fs::path(SIDESTEP_SOURCE_DIR) / "examples";
-
-std::string Slurp(const fs::path& path) {
-  std::ifstream stream(path);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 Finished Sidestep(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), SIDESTEP_PROGRAM);
@@ -37,7 +32,7 @@ class Examples : public ::testing::Test {
     if (!setting.empty()) arguments.insert(arguments.end(), {"--set", setting});
     const Finished finished = Sidestep(arguments);
     EXPECT_EQ(finished.exit_code, 0) << finished.err;
-    return nlohmann::json::parse(Slurp(folder_ / "result.json"), nullptr, false);
+    return nlohmann::json::parse(BytesOf(folder_ / "result.json"), nullptr, false);
   }
 
   const TemporaryFolder temporary_;
@@ -55,7 +50,7 @@ constexpr Kind kKinds[] = {{"planner", "planner/planners.def"},
 
 TEST_F(Examples, AreOneFileAndOneLineEach) {
   for (const auto& [kind, list] : kKinds) {
-    const std::string line = Slurp(kExamples / kind / fs::path(list).filename());
+    const std::string line = BytesOf(kExamples / kind / fs::path(list).filename());
     EXPECT_EQ(std::count(line.begin(), line.end(), '\n'), 1) << kind;
     const auto files = fs::directory_iterator(kExamples / kind);
     EXPECT_EQ(std::distance(files, fs::directory_iterator()), 2) << kind;
@@ -66,7 +61,7 @@ TEST_F(Examples, AreOneFileAndOneLineEach) {
 }
 
 TEST_F(Examples, AreEachShownInTheDocumentation) {
-  const std::string page = Slurp(fs::path(SIDESTEP_SOURCE_DIR) / "docs/adding.md");
+  const std::string page = BytesOf(fs::path(SIDESTEP_SOURCE_DIR) / "docs/adding.md");
   for (const auto& entry : fs::recursive_directory_iterator(kExamples)) {
     if (!entry.is_regular_file() || entry.path().filename() == "CMakeLists.txt") continue;
     EXPECT_THAT(page,

@@ -1,11 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <iterator>
 #include <sstream>
 
 #include "tests/package/installation.h"
+#include "tests/support/bytes_of.h"
 
 namespace sidestep {
 namespace {
@@ -13,11 +13,6 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-std::string Slurp(const fs::path& path) {
-  std::ifstream stream(path);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 std::vector<std::string> Lines(const std::string& text) {
   std::vector<std::string> lines;
@@ -82,7 +77,7 @@ TEST_F(InstalledCommand, BringsEveryModelAndScenarioOfTheSource) {
       const std::string ending = entry.path().extension().string();
       if (ending != ".yaml" && ending != ".xml" && ending != ".csv") continue;
       const fs::path name = entry.path().lexically_relative(SIDESTEP_SOURCE_DIR);
-      EXPECT_EQ(Slurp(installation_.prefix() / "share/sidestep" / name), Slurp(entry.path()))
+      EXPECT_EQ(BytesOf(installation_.prefix() / "share/sidestep" / name), BytesOf(entry.path()))
           << name;
     }
   }
@@ -105,7 +100,7 @@ TEST_F(InstalledCommand, HasAManPageForEachVerbWithEveryOptionOfItsHelp) {
   const std::string program_help = installation_.Run({"--help"}).out;
   for (const std::string& name : names) {
     EXPECT_THAT(program_help, HasSubstr("  " + name));
-    std::string page = Slurp(Man("sidestep-" + name + ".1"));
+    std::string page = BytesOf(Man("sidestep-" + name + ".1"));
     page.erase(std::remove(page.begin(), page.end(), '\\'), page.end());
     const std::vector<std::string> options = OptionsIn(installation_.Run({name, "--help"}).out);
     EXPECT_FALSE(options.empty()) << name;

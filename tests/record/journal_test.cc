@@ -22,6 +22,7 @@
 #include "sidestep/core/input_error.h"
 #include "sidestep/record/recording_file.h"
 #include "sidestep/record/sealed_file.h"
+#include "tests/support/bytes_of.h"
 #include "tests/support/full_recording.h"
 #include "tests/support/temporary_folder.h"
 
@@ -60,11 +61,6 @@ std::vector<unsigned char> WithFacts(Recording recording) {
   return ToHdf5(recording);
 }
 
-std::string ReadBytes(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 void WriteBytes(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
@@ -96,7 +92,7 @@ class JournalFile : public ::testing::Test {
 
   // Where the parts of the file end: where the next one begins by naming the format.
   std::vector<std::size_t> PartEnds() const {
-    const std::string bytes = ReadBytes(path_);
+    const std::string bytes = BytesOf(path_);
     std::vector<std::size_t> ends;
     for (std::size_t at = 0; at != std::string::npos;) {
       at = bytes.find("sidestep journal", at + 1);
@@ -153,7 +149,7 @@ TEST_F(JournalFile, IsReadUpToTheLastPartThatIsWhole) {
   const Recording whole = WithoutMetrics(FullRecording(9));
   const std::vector<double> shares = {0.4, 0.7, 1};
   const std::vector<std::size_t> sizes = KeepInParts(whole, shares);
-  const std::string bytes = ReadBytes(path_);
+  const std::string bytes = BytesOf(path_);
   ASSERT_EQ(sizes.back(), bytes.size());
   const std::string cut = folder_.path() / "cut";
   const auto is_border = [&](std::size_t size) {
@@ -216,7 +212,7 @@ TEST_F(JournalFile, IsARowOfPartsEachOfWhichCanTellWhetherItIsWhole) {
 TEST_F(JournalFile, IsReadUpToWhereItIsDamaged) {
   const Recording whole = WithoutMetrics(FullRecording(9));
   const std::vector<std::size_t> sizes = KeepInParts(whole, {0.4, 0.7, 1});
-  const std::string bytes = ReadBytes(path_);
+  const std::string bytes = BytesOf(path_);
   for (std::size_t i = 0; i < bytes.size(); i += 1999) {
     std::string damaged = bytes;
     damaged[i] = static_cast<char>(damaged[i] ^ (1 << (i % 8)));
@@ -234,7 +230,7 @@ TEST_F(JournalFile, IsReadUpToWhereItIsDamaged) {
 TEST_F(JournalFile, LeavesOutPartsThatDoNotGoOn) {
   const Recording whole = WithoutMetrics(FullRecording(9));
   const std::vector<std::size_t> sizes = KeepInParts(whole, {0.4, 1});
-  const std::string bytes = ReadBytes(path_);
+  const std::string bytes = BytesOf(path_);
   const std::string second = bytes.substr(sizes[0]);
   WriteBytes(path_, bytes + second);  // the same again
   const JournalContents contents = ReadJournal(path_);
@@ -253,7 +249,7 @@ TEST_F(JournalFile, GoesWhenItsRecordingIsSafeElsewhere) {
 TEST_F(JournalFile, ReplacesAnOlderOneNotBeforeItHasSomethingToSay) {
   WriteBytes(path_, "older");
   { const Journal nothing(path_, kFacts, {}); }
-  EXPECT_EQ(ReadBytes(path_), "older");
+  EXPECT_EQ(BytesOf(path_), "older");
   {
     Journal journal(path_, kFacts, {});
     journal.Keep(FullRecording(9));

@@ -17,6 +17,7 @@
 #include "sidestep/core/input_error.h"
 #include "sidestep/record/hdf5_image.h"
 #include "sidestep/record/sealed_file.h"
+#include "tests/support/bytes_of.h"
 #include "tests/support/full_recording.h"
 #include "tests/support/temporary_folder.h"
 
@@ -39,11 +40,6 @@ class RecordingFile : public ::testing::Test {
  private:
   const TemporaryFolder folder_;
 };
-
-std::string ReadBytes(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 void WriteBytes(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
@@ -198,14 +194,14 @@ TEST_F(RecordingFile, HasEqualBytesForEqualRecordings) {
   sleep(1);  // HDF5's time stamps count whole seconds.
   WriteRecording(FullRecording(), Path("b.h5"));
   WriteRecording(ReadRecording(Path("a.h5")), Path("c.h5"));
-  const std::string bytes = ReadBytes(Path("a.h5"));
-  EXPECT_EQ(bytes, ReadBytes(Path("b.h5")));
-  EXPECT_EQ(bytes, ReadBytes(Path("c.h5")));
+  const std::string bytes = BytesOf(Path("a.h5"));
+  EXPECT_EQ(bytes, BytesOf(Path("b.h5")));
+  EXPECT_EQ(bytes, BytesOf(Path("c.h5")));
 
   Recording other = FullRecording();
   other.control[4999].torque(1) = std::nextafter(1e300, 0.0);
   WriteRecording(other, Path("d.h5"));
-  EXPECT_NE(bytes, ReadBytes(Path("d.h5")));
+  EXPECT_NE(bytes, BytesOf(Path("d.h5")));
 }
 
 TEST_F(RecordingFile, OpensAsPlainHdf5) {
@@ -284,7 +280,7 @@ TEST_F(RecordingFile, NamesTheVersionItCannotRead) {
 
 TEST_F(RecordingFile, IsRefusedWhereverItIsCut) {
   WriteRecording(FullRecording(), Path("whole.h5"));
-  const std::string whole = ReadBytes(Path("whole.h5"));
+  const std::string whole = BytesOf(Path("whole.h5"));
   ASSERT_GT(whole.size(), 10000u);
   for (std::size_t size = 1; size < whole.size(); size += size < 1200 ? 37 : 4001) {
     WriteBytes(Path("cut.h5"), whole.substr(0, size));
@@ -325,7 +321,7 @@ TEST_F(RecordingFile, IsRefusedAtEveryLengthButItsOwn) {
 TEST_F(RecordingFile, IsRefusedWhicheverByteIsDamaged) {
   const std::string path = Path("damaged.h5");
   WriteRecording(SmallRecording(), path);
-  const std::string whole = ReadBytes(path);
+  const std::string whole = BytesOf(path);
   std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
   const auto put = [&](std::size_t i, char byte) {
     file.seekp(static_cast<std::streamoff>(i)).put(byte).flush();

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -15,6 +14,7 @@
 #include "sidestep/core/input_error.h"
 #include "sidestep/render/video_writer.h"
 #include "tests/render/sample_recording.h"
+#include "tests/support/bytes_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace sidestep::render {
@@ -33,11 +33,6 @@ class VideoFile : public ::testing::Test {
  private:
   const TemporaryFolder folder_;
 };
-
-std::string ReadBytes(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 // What a command prints; fails the test if the command fails.
 std::string OutputOf(const std::string& command) {
@@ -86,7 +81,7 @@ TEST_F(VideoFile, IsPlainH264ThatPlayersUnderstand) {
   EXPECT_EQ(stream["color_space"], "bt709");
   EXPECT_NEAR(std::stod(stream["duration"].get<std::string>()), 1.6, 1e-3);
   EXPECT_THAT(facts["format"]["format_name"].get<std::string>(), HasSubstr("mp4"));
-  const std::string bytes = ReadBytes(Path("a.mp4"));
+  const std::string bytes = BytesOf(Path("a.mp4"));
   EXPECT_LT(bytes.find("moov"), bytes.find("mdat")) << "the index must come first";
 }
 
@@ -110,7 +105,7 @@ TEST_F(VideoFile, ShowsTheFramesUprightAndInTheirColours) {
 TEST_F(VideoFile, HasEqualBytesForEqualFrames) {
   WriteTestVideo(Path("a.mp4"));
   WriteTestVideo(Path("b.mp4"));
-  EXPECT_EQ(ReadBytes(Path("a.mp4")), ReadBytes(Path("b.mp4")));
+  EXPECT_EQ(BytesOf(Path("a.mp4")), BytesOf(Path("b.mp4")));
 }
 
 TEST_F(VideoFile, AppearsOnlyWhenItIsFinished) {
@@ -159,8 +154,8 @@ TEST_F(VideoFile, PngHoldsEveryPixelExactly) {
   const Image image = TestPicture(321, 181, 3);
   WritePng(image, Path("a.png"));
   WritePng(image, Path("b.png"));
-  EXPECT_EQ(ReadBytes(Path("a.png")), ReadBytes(Path("b.png")));
-  EXPECT_THAT(ReadBytes(Path("a.png")), StartsWith("\x89PNG\r\n"));
+  EXPECT_EQ(BytesOf(Path("a.png")), BytesOf(Path("b.png")));
+  EXPECT_THAT(BytesOf(Path("a.png")), StartsWith("\x89PNG\r\n"));
   const std::string pixels = Decode(Path("a.png"));
   EXPECT_EQ(pixels, std::string(reinterpret_cast<const char*>(image.row(0)), 321 * 181 * 3));
   EXPECT_THROW(WritePng(image, Path("absent/a.png")), InputError);
@@ -186,7 +181,7 @@ TEST_F(ComparisonVideo, IsTheSameFileEachTimeAndLastsAsLongAsTheEpisodeAndASecon
     Comparison comparison(gl, traces_, Small());
     EXPECT_EQ(RenderVideo(comparison, Path(name), {.frames_per_second = 10}, nullptr), 30);
   }
-  EXPECT_EQ(ReadBytes(Path("a.mp4")), ReadBytes(Path("b.mp4")));
+  EXPECT_EQ(BytesOf(Path("a.mp4")), BytesOf(Path("b.mp4")));
   EXPECT_EQ(Decode(Path("a.mp4")).size(), 30u * 320 * 180 * 3);
 }
 
@@ -216,8 +211,8 @@ TEST_F(ComparisonVideo, StillShowsTheTellingMomentUnlessAsked) {
   RenderStill(comparison, Path("telling.png"), std::nullopt);
   RenderStill(comparison, Path("least.png"), EpisodeTime(1.25));
   RenderStill(comparison, Path("start.png"), EpisodeTime(0));
-  EXPECT_EQ(ReadBytes(Path("telling.png")), ReadBytes(Path("least.png")));
-  EXPECT_NE(ReadBytes(Path("telling.png")), ReadBytes(Path("start.png")));
+  EXPECT_EQ(BytesOf(Path("telling.png")), BytesOf(Path("least.png")));
+  EXPECT_NE(BytesOf(Path("telling.png")), BytesOf(Path("start.png")));
 }
 
 }  // namespace

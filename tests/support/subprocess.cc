@@ -8,22 +8,13 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
 #include <thread>
 
+#include "tests/support/bytes_of.h"
+
 namespace sidestep {
-namespace {
-
-std::string Slurp(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
-}  // namespace
+namespace {}  // namespace
 
 Running::Running(const std::vector<std::string>& command,
                  const std::vector<std::string>& environment, const std::string& working_directory,
@@ -63,7 +54,7 @@ bool Running::HasEnded() {
   return status_.has_value();
 }
 
-std::string Running::out() const { return Slurp(folder_->path() / "out"); }
+std::string Running::out() const { return BytesOf(folder_->path() / "out"); }
 
 bool Running::Prints(const std::string& text) {
   const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(30);
@@ -83,7 +74,7 @@ Finished Running::Finish() {
   finished.exit_code = WIFEXITED(*status_) ? WEXITSTATUS(*status_) : -1;
   finished.signal = WIFSIGNALED(*status_) ? WTERMSIG(*status_) : 0;
   finished.out = out();
-  finished.err = Slurp(folder_->path() / "err");
+  finished.err = BytesOf(folder_->path() / "err");
   if (finished.exit_code == 127) throw std::runtime_error("cannot run " + name_);
   return finished;
 }
