@@ -74,12 +74,12 @@ option(SIDESTEP_WHOLE_TEST_PROGRAMS "ctest runs test programs, not each of their
 # sidestep_test(<folder>/<name>_test [SOURCES <further file>...] DEPENDS <target>...
 #               [SLOW | HEAVY | THREADED])
 #
-# Builds tests/<folder>/<name>_test.cc; ctest runs each of its cases, or the whole program at once with
-# SIDESTEP_WHOLE_TEST_PROGRAMS. SLOW cases carry the label "slow", which `./dev test` leaves out and
-# `./dev test --all` runs. HEAVY ones, which take long under sanitizers, carry the label "heavy", and
-# `./dev test --sanitize` leaves them out. THREADED ones, which start
-# threads, carry the label "threaded", and `./dev test --all` runs them under the thread sanitizer.
-# Cases in the folder of a module carry the label "unit", or "unit_threaded".
+# Builds tests/<folder>/<name>_test.cc; ctest runs each of its cases, or the whole program at once
+# with SIDESTEP_WHOLE_TEST_PROGRAMS. SLOW cases carry the label "slow", which `./dev test` leaves out
+# and `./dev test --all` runs. HEAVY ones, which take long under sanitizers, carry the label "heavy",
+# and `./dev test --sanitize` leaves them out. THREADED ones, which start threads, carry the label
+# "threaded", and `./dev test --all` runs them under the thread sanitizer. Cases in the folder of a
+# module carry the label "unit", or "unit_threaded".
 function(sidestep_test path)
   cmake_parse_arguments(ARG "SLOW;HEAVY;THREADED" "" "SOURCES;DEPENDS" ${ARGN})
   string(REPLACE "/" "_" target ${path})

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sidestep/core/rotation_vector.h"
 #include "sidestep/hardware/planar_pose.h"
 
 namespace sidestep::hardware {
@@ -36,31 +37,10 @@ Eigen::Matrix3d Cross(const Eigen::Vector3d& v) {
   return m;
 }
 
-Eigen::Quaterniond RotationBy(const Eigen::Vector3d& vector_rad) {
-  const double angle = vector_rad.norm();
-  if (!(angle > 0)) return Eigen::Quaterniond::Identity();
-  return Eigen::Quaterniond(Eigen::AngleAxisd(angle, vector_rad / angle));
-}
-
-Eigen::Vector3d RotationVector(const Eigen::Quaterniond& R) {
-  const Eigen::AngleAxisd turn(R.w() < 0 ? Eigen::Quaterniond(-R.coeffs()) : R);
-  return turn.angle() * turn.axis();
-}
-
 const TagDetection* Find(const std::vector<TagDetection>& seen, int id) {
   const auto found =
       std::find_if(seen.begin(), seen.end(), [&](const TagDetection& tag) { return tag.id == id; });
   return found == seen.end() ? nullptr : &*found;
-}
-
-Eigen::Matrix<double, 3, 4> CornersOf(const BodyTag& tag) {
-  const double h = tag.size_m / 2;
-  Eigen::Matrix<double, 3, 4> p_OQ;
-  p_OQ.col(0) = tag.X_OT * Eigen::Vector3d(-h, h, 0);  // y is down
-  p_OQ.col(1) = tag.X_OT * Eigen::Vector3d(h, h, 0);
-  p_OQ.col(2) = tag.X_OT * Eigen::Vector3d(h, -h, 0);
-  p_OQ.col(3) = tag.X_OT * Eigen::Vector3d(-h, -h, 0);
-  return p_OQ;
 }
 
 // Gauss-Newton on position and rotation, damped where a step would not help.
@@ -188,10 +168,10 @@ std::optional<BodyPose> LocateBody(const robot::CameraIntrinsics& camera, const 
     Eigen::Matrix<double, 2, 4> ideal;
     for (int k = 0; k < 4; ++k) ideal.col(k) = robot::Unproject(camera, found->corners_px.col(k));
     if (!ideal.allFinite()) return std::nullopt;
-    const Eigen::Matrix<double, 3, 4> p_OQ = CornersOf(tag);
+    const Eigen::Matrix<double, 3, 4> p_TQ = CornersOfTag(tag.size_m);
     const std::array<Eigen::Matrix2d, 4> edges = EdgesOf(found->corners_px, edge_sigma_px);
     for (int k = 0; k < 4; ++k) {
-      corners.push_back({p_OQ.col(k), ideal.col(k), edges[static_cast<std::size_t>(k)]});
+      corners.push_back({tag.X_OT * p_TQ.col(k), ideal.col(k), edges[static_cast<std::size_t>(k)]});
     }
     ++num_tags;
     if (found->shortest_edge_px() > largest_px) {

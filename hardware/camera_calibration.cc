@@ -4,9 +4,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/number_text.h"
+#include "sidestep/core/rotation_vector.h"
 #include "sidestep/hardware/body_pose.h"
 #include "sidestep/hardware/planar_pose.h"
 
@@ -16,21 +18,17 @@ namespace {
 using Vector12 = Eigen::Matrix<double, 12, 1>;
 using Matrix12 = Eigen::Matrix<double, 12, 12>;
 
-constexpr double kRadPerDegree = 0.017453292519943295;
+constexpr double kRadPerDegree = std::numbers::pi / 180;
 
 Pose Moved(const Pose& X, const Eigen::Ref<const Eigen::Matrix<double, 6, 1>>& by) {
-  const Eigen::Vector3d turn = by.tail<3>();
-  const double angle = turn.norm();
-  const Eigen::Quaterniond R(Eigen::AngleAxisd(angle, turn.stableNormalized()));
-  return {R * X.rotation(), X.translation() + by.head<3>()};
+  return {RotationBy(by.tail<3>()) * X.rotation(), X.translation() + by.head<3>()};
 }
 
-Eigen::Matrix<double, 8, 1> CornersOf(const robot::CameraIntrinsics& camera, const Pose& X_CT,
-                                      double size_m) {
-  const double h = size_m / 2;
-  const Eigen::Vector3d corners[] = {{-h, h, 0}, {h, h, 0}, {h, -h, 0}, {-h, -h, 0}};
+Eigen::Matrix<double, 8, 1> PixelsOfTag(const robot::CameraIntrinsics& camera, const Pose& X_CT,
+                                        double size_m) {
+  const Eigen::Matrix<double, 3, 4> p_TQ = CornersOfTag(size_m);
   Eigen::Matrix<double, 8, 1> pixels;
-  for (int k = 0; k < 4; ++k) pixels.segment<2>(2 * k) = Project(camera, X_CT * corners[k]);
+  for (int k = 0; k < 4; ++k) pixels.segment<2>(2 * k) = Project(camera, X_CT * p_TQ.col(k));
   return pixels;
 }
 
@@ -42,7 +40,7 @@ Eigen::VectorXd Errors(const robot::CameraIntrinsics& camera, double size_m,
   for (std::size_t i = 0; i < views.size(); ++i) {
     const Eigen::Map<const Eigen::Matrix<double, 8, 1>> seen(views[i].tag.corners_px.data());
     errors.segment<8>(8 * static_cast<Eigen::Index>(i)) =
-        CornersOf(camera, X_CW * views[i].X_WH * eye.X_HT, size_m) - seen;
+        PixelsOfTag(camera, X_CW * views[i].X_WH * eye.X_HT, size_m) - seen;
   }
   return errors;
 }
@@ -104,10 +102,8 @@ std::optional<Pose> LocateTag(const robot::CameraIntrinsics& camera, double size
 double SecondTurn(const std::vector<HandView>& views) {
   Eigen::Matrix3Xd turns(3, static_cast<Eigen::Index>(views.size()));
   for (std::size_t i = 0; i < views.size(); ++i) {
-    Eigen::Quaterniond R = views[0].X_WH.rotation().conjugate() * views[i].X_WH.rotation();
-    if (R.w() < 0) R.coeffs() *= -1;
-    const Eigen::AngleAxisd turn(R);
-    turns.col(static_cast<Eigen::Index>(i)) = turn.angle() * turn.axis();
+    turns.col(static_cast<Eigen::Index>(i)) =
+        RotationVector(views[0].X_WH.rotation().conjugate() * views[i].X_WH.rotation());
   }
   const Eigen::Matrix3Xd centred = turns.colwise() - turns.rowwise().mean();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(centred * centred.transpose());

@@ -33,8 +33,8 @@ struct CameraCalibration {
 
 /// What a calibration has to be to be accepted.
 inline constexpr int kLeastViews = 15, kHeldOut = 5;
-inline constexpr double kLeastTurn_rad =
-    0.5236;  ///< of the hand, about each of two axes: 30 degrees
+/// Of the hand, about each of two axes: 30 degrees.
+inline constexpr double kLeastTurn_rad = 0.5236;
 inline constexpr double kMostHeldOutRms_m = 0.005, kMostHeldOut_m = 0.010;
 inline constexpr double kMostHeldOutRms_rad = 0.0087;  ///< half a degree
 inline constexpr int kMostAge_days = 30;

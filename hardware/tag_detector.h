@@ -27,6 +27,14 @@ struct TagDetection {
   }
 };
 
+/// Those corners in the tag's frame T, in its middle with x right, y down, z into the print [m].
+inline Eigen::Matrix<double, 3, 4> CornersOfTag(double size_m) {
+  const double h = size_m / 2;
+  Eigen::Matrix<double, 3, 4> p_TQ;
+  p_TQ << -h, h, h, -h, h, h, -h, -h, 0, 0, 0, 0;
+  return p_TQ;
+}
+
 struct TagDetectorOptions {
   /// Squares are looked for in a picture this much smaller; their edges are then found in the whole
   /// one. 2 costs no accuracy and a quarter of the time.

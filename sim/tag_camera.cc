@@ -1,7 +1,6 @@
 #include "sidestep/sim/tag_camera.h"
 
-#include <Eigen/Geometry>
-
+#include "sidestep/core/rotation_vector.h"
 #include "sidestep/sim/static_cells.h"
 
 namespace sidestep::sim {
@@ -51,12 +50,11 @@ ObjectObservation TagCamera::Measure(const scenarios::MovingObstacle& obstacle, 
   const Eigen::Vector3d error_m =
       settings_.across_noise * d * (noise - along) + settings_.along_noise_per_m * d * d * along;
   const Eigen::Vector3d turn_rad = settings_.rotation_noise_rad * Normal3(random_);
-  const Eigen::Quaterniond turn(Eigen::AngleAxisd(turn_rad.norm(), turn_rad.stableNormalized()));
 
   ObjectObservation observation;
   observation.id = obstacle.name;
   observation.t = world_.time();
-  observation.X_WO = Pose(X_WO.rotation() * turn, X_WO.translation() + error_m);
+  observation.X_WO = Pose(X_WO.rotation() * RotationBy(turn_rad), X_WO.translation() + error_m);
   observation.covariance.topLeftCorner<3, 3>() =
       SightCovariance(observation.X_WO.translation() - settings_.position_m, settings_);
   observation.covariance.bottomRightCorner<3, 3>().diagonal().setConstant(
