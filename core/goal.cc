@@ -19,6 +19,11 @@ bool IsAtGoal(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const Eigen::V
          LargestDifference(v, Eigen::VectorXd::Zero(v.size()), scale) <= kGoalSpeed_rad_s;
 }
 
+bool EndsAtGoal(const Trajectory& plan, const Eigen::VectorXd& q_goal,
+                const Eigen::VectorXd& scale) {
+  return LargestDifference(plan.q.rightCols<1>(), q_goal, scale) <= kPlannedGoalTolerance_rad;
+}
+
 GoalWatch::GoalWatch(const Eigen::VectorXd& q_goal, double dwell_s, const Eigen::VectorXd& scale)
     : q_goal_(q_goal), dwell_s_(dwell_s), scale_(scale) {}
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "sidestep/core/time.h"
+#include "sidestep/core/trajectory.h"
 
 namespace sidestep {
 
@@ -24,6 +25,10 @@ inline constexpr double kGoalSpeed_rad_s = 0.05;
 /// Whether an arm that moves by (q, v) is at `q_goal`. All of shape n.
 bool IsAtGoal(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const Eigen::VectorXd& q_goal,
               const Eigen::VectorXd& scale = {});
+
+/// Whether a plan leads to `q_goal` (shape n): by where it ends.
+bool EndsAtGoal(const Trajectory& plan, const Eigen::VectorXd& q_goal,
+                const Eigen::VectorXd& scale = {});
 
 /// What it is to reach a goal, for whoever has to decide it: to be there without a break for as
 /// long as was asked for. Shown a motion state by state, in order.

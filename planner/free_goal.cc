@@ -7,6 +7,7 @@
 #include "sidestep/core/trajectory.h"
 #include "sidestep/planner/clearance.h"
 #include "sidestep/planner/costs/obstacle_hinge.h"
+#include "sidestep/planner/gp_objective.h"
 
 namespace sidestep::planner {
 namespace {
@@ -17,7 +18,6 @@ constexpr double kHingeSigma_m = 0.05;
 constexpr int kMostSteps = 20;  // with each pull
 constexpr double kLongestStep_rad = 0.1;
 constexpr double kStill_rad = 1e-4;
-constexpr double kSelfEpsilon_m = 0.05;
 
 double LeastClearance(const robot::RobotModel& robot, const sdf::DistanceField& field,
                       const Eigen::VectorXd& q, EpisodeTime t) {

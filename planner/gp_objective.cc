@@ -14,9 +14,6 @@ constexpr double kPositionWeight = 1000;
 constexpr double kVelocityWeight = 30;
 constexpr double kAccelerationWeight = 5;
 
-// Links keep this far apart: spheres leave gaps between them and the shapes (docs/robots.md).
-constexpr double kSelfEpsilon_m = 0.05;
-
 // Soft costs give way a little: they begin this far inside the robot's position limits, and at this
 // share of the velocity and the acceleration that are asked for.
 constexpr double kPositionMargin_rad = 0.02;

@@ -9,6 +9,9 @@
 
 namespace sidestep::planner {
 
+/// Links are kept so far apart: spheres leave gaps between them and the shapes (docs/robots.md).
+inline constexpr double kSelfEpsilon_m = 0.05;
+
 /// The objective of a Gaussian-process planner. Units as in the cost functions of planner/costs/.
 struct GpProblemOptions {
   double epsilon_m = 0.2;
@@ -44,9 +47,9 @@ SoftLimits MakeSoftLimits(const robot::RobotModel& robot, const Eigen::VectorXd&
                           const Eigen::VectorXd& q_goal, const LimitWeights& weights,
                           double velocity_scale, double acceleration_scale);
 
-/// What planners make of their settings, whatever solves it: links are kept 0.05 m apart, and a
-/// motion to 0.97 of the velocities and accelerations that are asked for, since soft limits give
-/// way a little.
+/// What planners make of their settings, whatever solves it: links are kept kSelfEpsilon_m apart,
+/// and a motion to 0.97 of the velocities and accelerations that are asked for, since soft limits
+/// give way a little.
 GpProblemOptions ObjectiveOf(const PlannerSettings& settings, const GpSettings& gp);
 /// @param stiffness weights are so many times the usual.
 SoftLimits SoftLimitsOf(const robot::RobotModel& robot, const Eigen::VectorXd& q_start,

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "sidestep/core/goal.h"
+#include "sidestep/robot/tolerance_scale.h"
 
 namespace sidestep::planner {
 namespace {
@@ -86,9 +87,9 @@ PlanResult Planner::Plan(const PlanRequest& request) const {
   if (!result.reason.empty()) return result;
 
   const Verdict verdict = judge.Judge(*answer.trajectory);
-  const double goal_error_rad =
-      (answer.trajectory->q.rightCols<1>() - request.q_goal).cwiseAbs().maxCoeff();
-  const bool is_short = capabilities().reaches_goal && goal_error_rad > kPlannedGoalTolerance_rad;
+  const bool is_short =
+      capabilities().reaches_goal &&
+      !EndsAtGoal(*answer.trajectory, request.q_goal, robot::ToleranceScale(robot_));
   result.status = StatusOf(verdict, is_short, answer.converged);
   if (is_short) {
     result.reason = answer.why_short.empty() ? "it ends elsewhere than at the goal"

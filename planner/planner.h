@@ -64,8 +64,8 @@ struct PlanResult {
 
 /// What a planner can do beyond what every planner promises; tests hold it to what it declares.
 struct PlannerCapabilities {
-  bool reaches_goal =
-      false;  ///< its plans end at rest at the goal, unless they are said to end short
+  /// Its plans end at rest at the goal, unless they are said to end short of it.
+  bool reaches_goal = false;
   bool avoids_obstacles = false;  ///< it looks for a plan that is free
 };
 

@@ -24,6 +24,9 @@ void CheckPlannerSettings(const PlannerSettings& settings);
 /// the kinds that are switched on.
 double LargestShare(const LimitUse& use, const PlannerSettings& settings);
 
+/// A share above this is worth a later arrival, or less clearance, for one that is not.
+inline constexpr double kMuchTooFast = 1.05;
+
 /// Whether a motion that uses so much of a robot's limits keeps those that `settings` ask for: the
 /// scaled ones of the kinds that are switched on, but for a thousandth.
 bool KeepsLimits(const LimitUse& use, const PlannerSettings& settings);

@@ -19,7 +19,6 @@ constexpr int kMinFreeStates = 3;        // fewer leave nothing to choose
 constexpr double kOffPlan_rad = 0.1;     // a robot this far from its plan does not follow it
 constexpr double kStill_rad_s = 0.01;    // what is measured of a robot at rest is noise below this
 constexpr double kArrivesLate_s = 0.5;   // an arm lags its plan by less, or does not arrive by it
-constexpr double kMuchTooFast = 1.05;    // of a limit: a share that is worth to come later for
 constexpr double kRecordStep_s = 0.1;    // between the recorded positions of a predicted object
 constexpr double kTimeEpsilon_s = 1e-9;  // support times are sums of steps, rounded
 
@@ -258,9 +257,7 @@ std::optional<PlanRequest> CycleWork::MakeRequest() const {
   const bool is_free =
       !MeasureClearance(planner_.robot(), field_, running, running_->start, t_effect_, judged_to)
            .first_contact;
-  const double goal_error_rad =
-      LargestDifference(running.q.rightCols<1>(), options_.q_goal, scale_);
-  if (is_free && goal_error_rad <= kPlannedGoalTolerance_rad) return std::nullopt;
+  if (is_free && EndsAtGoal(running, options_.q_goal, scale_)) return std::nullopt;
   // Where it waits for a goal that is blocked, it rests.
   const EpisodeTime horizon_end = t_effect_ + HorizonOffset(options_.horizon_s);
   if (is_free && !task_.is_braking &&

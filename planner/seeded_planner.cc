@@ -8,6 +8,7 @@
 #include "sidestep/planner/first_guess.h"
 #include "sidestep/planner/free_goal.h"
 #include "sidestep/planner/seeds.h"
+#include "sidestep/robot/tolerance_scale.h"
 
 namespace sidestep::planner {
 namespace {
@@ -20,18 +21,8 @@ constexpr int kTrialIterations = 12;
 constexpr double kStiffer[] = {10, 100};
 
 constexpr double kMuchClearer_m = 0.01;
-constexpr double kMuchTooFast = 1.05;  // of a limit
 
 constexpr double kColdTolerance = 1e-3;  // of the first stage, whose result is only a start
-
-bool EndsAt(const Trajectory& trajectory, const Eigen::VectorXd& q_goal) {
-  return (trajectory.q.rightCols<1>() - q_goal).cwiseAbs().maxCoeff() <= kPlannedGoalTolerance_rad;
-}
-
-// Whether the plan that runs does.
-bool LeadsToGoal(const PlanRequest& request) {
-  return request.initial && EndsAt(*request.initial, request.q_goal);
-}
 
 PlanAnswer Near(PlanAnswer answer) {
   answer.why_short = "the goal is blocked when the horizon ends";
@@ -99,7 +90,8 @@ class SeededPlanner::Search {
       const bool is_finished = best.answer.converged && best.verdict.is_free();
       if (!is_finished || best.verdict.keeps_limits || IsSpent()) break;
       Candidate stiffer = SolveWithLimits(stiffness, MostTrialIterations());
-      if (!EndsAt(*stiffer.answer.trajectory, request_.q_goal)) break;  // there is too little time
+      if (!planner_.EndsAtGoalOf(request_, *stiffer.answer.trajectory))
+        break;  // there is too little time
       if (planner_.IsBetter(stiffer.verdict, best.verdict)) best = std::move(stiffer);
     }
     return best;
@@ -138,6 +130,14 @@ class SeededPlanner::Search {
   int iterations_ = 0, num_solves_ = 0;
   bool was_cut_short_ = false;
 };
+
+bool SeededPlanner::EndsAtGoalOf(const PlanRequest& request, const Trajectory& trajectory) const {
+  return EndsAtGoal(trajectory, request.q_goal, robot::ToleranceScale(robot()));
+}
+
+bool SeededPlanner::LeadsToGoal(const PlanRequest& request) const {
+  return request.initial && EndsAtGoalOf(request, *request.initial);
+}
 
 bool SeededPlanner::IsBetter(const Verdict& a, const Verdict& b) const {
   const auto rank = [this](const Verdict& verdict) {

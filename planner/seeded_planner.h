@@ -59,6 +59,9 @@ class SeededPlanner : public Planner {
   PlanAnswer TryAll(const PlanRequest& request, PlanJudge& judge) const;
   /// If the goal is blocked, the same request with the nearest one that is free.
   std::optional<PlanRequest> WithFreeGoal(const PlanRequest& request) const;
+  bool EndsAtGoalOf(const PlanRequest& request, const Trajectory& trajectory) const;
+  /// Whether the plan that runs does.
+  bool LeadsToGoal(const PlanRequest& request) const;
   /// Free within the limits that are asked for comes before free within the robot's own, that
   /// before free, and free before not free; then what is safer.
   bool IsBetter(const Verdict& a, const Verdict& b) const;

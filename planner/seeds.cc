@@ -2,12 +2,13 @@
 
 #include <bit>
 #include <cstdint>
+#include <iterator>
 
 namespace sidestep::planner {
 namespace {
 
 constexpr Timing kTimings[] = {Timing::kWholeTime, Timing::kLeaveLate, Timing::kArriveEarly};
-constexpr int kNumTimings = 3;
+constexpr int kNumTimings = static_cast<int>(std::size(kTimings));
 
 EpisodeTime FirstFreeTime(const PlanRequest& request) {
   return request.start + HorizonOffset(request.num_fixed * request.step_s);

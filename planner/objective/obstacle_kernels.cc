@@ -174,7 +174,7 @@ void CentersOfLanes(const Arm& arm, std::size_t lane, const double* q_8, double*
   };
   place_spheres(base, arm.end_base_sphere);
 
-  Frame frames[robot::RobotModel::kMaxRows];
+  Frame frames[robot::kMaxRows];
   Frame frame = base;
   const int num_rows = static_cast<int>(arm.rows.size());
   for (int i = 0; i < num_rows; ++i) {

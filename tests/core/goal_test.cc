@@ -24,6 +24,19 @@ TEST(Goal, IsAskedOfPlansMoreStrictlyThanOfTheArmThatLagsThem) {
   EXPECT_LT(kPlannedGoalTolerance_rad, kGoalTolerance_rad);
 }
 
+TEST(Goal, IsWhereAPlanToItEnds) {
+  const Eigen::Vector2d scale(1, 0.25);
+  const auto plan_to = [](const Eigen::Vector2d& q_end) {
+    Trajectory plan{Eigen::Vector2d(0, 1), Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero()};
+    plan.q.col(1) = q_end;
+    return plan;
+  };
+  EXPECT_TRUE(EndsAtGoal(plan_to(kGoal + Eigen::Vector2d(0.0099, -0.0099)), kGoal));
+  EXPECT_FALSE(EndsAtGoal(plan_to(kGoal + Eigen::Vector2d(0.0101, 0)), kGoal));
+  EXPECT_TRUE(EndsAtGoal(plan_to(kGoal + Eigen::Vector2d(0, 0.00249)), kGoal, scale));
+  EXPECT_FALSE(EndsAtGoal(plan_to(kGoal + Eigen::Vector2d(0, 0.00251)), kGoal, scale));
+}
+
 // Ticks of 0.1 s; each letter says whether the arm is at its goal (x) or elsewhere (-).
 struct Stay {
   const char* name;
