@@ -16,22 +16,13 @@ ArmCapsules::ArmCapsules(const robot::RobotModel& robot)
 }
 
 void ArmCapsules::Place(const JointVector& q, All& placed) const noexcept {
-  // Entry 0 is the base, entry i + 1 is row i.
-  std::array<robot::RowPlace, robot::RobotModel::kMaxRows + 1> places;
-  const auto at = [&places](int row) -> const robot::RowPlace& {
-    const int entry = row + 1;
-    return places[static_cast<std::size_t>(entry)];
-  };
-  places[0].R_WK = R_WB_;
-  places[0].p_WK = p_WB_;
-  std::size_t entry = 0;
-  for (const robot::KinematicRow& row : rows_) {
-    const robot::RowPlace& parent = at(row.parent);
-    PlaceRow(row, parent.R_WK, parent.p_WK, row.PositionOf(q(row.coordinate)), places[++entry]);
-  }
+  robot::RowPlaces places;
+  places.of[0].R_WK = R_WB_;
+  places.of[0].p_WK = p_WB_;
+  PlaceRows(rows_, q, places);
   for (std::size_t k = 0; k < static_cast<std::size_t>(size_); ++k) {
     const OnRow& capsule = capsules_[k];
-    const robot::RowPlace& place = at(capsule.row);
+    const robot::RowPlace& place = places[capsule.row];
     placed[k] = {place.p_WK + place.R_WK * capsule.p_KA, place.p_WK + place.R_WK * capsule.p_KB,
                  capsule.radius_m, capsule.row >= 0};
   }

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "sidestep/robot/joint.h"
@@ -53,6 +55,31 @@ inline void PlaceRow(const KinematicRow& row, const Eigen::Matrix3d& R_WP,
   place.R_WK.col(0) = x;
   place.R_WK.col(1) = row.cos_alpha * y + row.sin_alpha * z;
   place.R_WK.col(2) = row.cos_alpha * z - row.sin_alpha * y;
+}
+
+/// A robot with more joints that move, with those that mimic others, is refused.
+inline constexpr int kMaxRows = 32;
+
+/// Where all rows of a robot are. Entry 0 is the base, whose R_WK and p_WK say where it stands;
+/// entry i + 1 is row i.
+struct RowPlaces {
+  std::array<RowPlace, kMaxRows + 1> of;
+
+  const RowPlace& operator[](int row) const {
+    const int entry = row + 1;
+    return of[static_cast<std::size_t>(entry)];
+  }
+};
+
+/// The forward kinematics of rows, from the base's place, which is given. Allocates nothing.
+/// @param q any vector of the robot's number of coordinates.
+template <class Vector>
+void PlaceRows(const std::vector<KinematicRow>& rows, const Vector& q, RowPlaces& places) {
+  std::size_t entry = 0;
+  for (const KinematicRow& row : rows) {
+    const RowPlace& parent = places[row.parent];
+    PlaceRow(row, parent.R_WK, parent.p_WK, row.PositionOf(q(row.coordinate)), places.of[++entry]);
+  }
 }
 
 /// A link stands still in the frame of a row, or of the base.

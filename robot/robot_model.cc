@@ -1,38 +1,29 @@
 #include "sidestep/robot/robot_model.h"
 
 #include <Eigen/Geometry>
-#include <array>
 #include <stdexcept>
+#include <string>
 
 namespace sidestep::robot {
-
-// Entry 0 is the base, entry i + 1 is row i.
-struct RobotModel::Places {
-  std::array<RowPlace, kMaxRows + 1> of;
-
-  const RowPlace& operator[](int row) const { return of[static_cast<std::size_t>(row + 1)]; }
-};
 
 int RobotModel::LineOf(const std::string& key) const {
   const auto found = lines_.find(key);
   return found == lines_.end() ? 1 : found->second;
 }
 
-void RobotModel::ComputePlaces(const Eigen::VectorXd& q, Places& places) const {
+RowPlaces RobotModel::PlacesAt(const Eigen::VectorXd& q) const {
   if (q.size() != num_joints()) {
     throw std::invalid_argument("RobotModel: q must have " + std::to_string(num_joints()) +
                                 " values, has " + std::to_string(q.size()));
   }
+  RowPlaces places;
   places.of[0].R_WK = X_WB_.rotation().toRotationMatrix();
   places.of[0].p_WK = X_WB_.translation();
-  std::size_t place = 0;
-  for (const KinematicRow& row : kinematics_.rows()) {
-    const RowPlace& parent = places[row.parent];
-    PlaceRow(row, parent.R_WK, parent.p_WK, row.PositionOf(q(row.coordinate)), places.of[++place]);
-  }
+  PlaceRows(kinematics_.rows(), q, places);
+  return places;
 }
 
-Pose RobotModel::PoseOf(int link, const Places& places) const {
+Pose RobotModel::PoseOf(int link, const RowPlaces& places) const {
   const LinkOnRow& on = kinematics_.link(link);
   const RowPlace& row = places[on.row];
   return Pose(Eigen::Quaterniond(on.is_moved ? Eigen::Matrix3d(row.R_WK * on.R_KL) : row.R_WK),
@@ -40,8 +31,7 @@ Pose RobotModel::PoseOf(int link, const Places& places) const {
 }
 
 std::vector<Pose> RobotModel::ComputeLinkPoses(const Eigen::VectorXd& q) const {
-  Places places;
-  ComputePlaces(q, places);
+  const RowPlaces places = PlacesAt(q);
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     poses.push_back(PoseOf(static_cast<int>(i), places));
@@ -50,15 +40,13 @@ std::vector<Pose> RobotModel::ComputeLinkPoses(const Eigen::VectorXd& q) const {
 }
 
 Pose RobotModel::ComputeToolPose(const Eigen::VectorXd& q) const {
-  Places places;
-  ComputePlaces(q, places);
+  const RowPlaces places = PlacesAt(q);
   const Pose X_WL = PoseOf(tool_link_, places);
   return X_LTool_ ? X_WL * *X_LTool_ : X_WL;
 }
 
 SphereCenters RobotModel::ComputeSphereCenters(const Eigen::VectorXd& q, bool with_jacobian) const {
-  Places places;
-  ComputePlaces(q, places);
+  const RowPlaces places = PlacesAt(q);
   SphereCenters result;
   result.p_WS.resize(3, num_spheres());
   if (with_jacobian) result.Jq.setZero(3 * num_spheres(), num_joints());

@@ -64,15 +64,13 @@ class RobotModel {
 
   /// Numbers of a configuration; more are refused.
   static constexpr int kMaxJoints = 16;
-  /// Joints that move, with those that mimic others; more are refused.
-  static constexpr int kMaxRows = 32;
   /// More are refused.
   static constexpr std::size_t kMaxCapsules = 32;
 
   const std::string& name() const { return name_; }
   const std::string& file() const { return file_; }  ///< where it was read
   /// The line there of what only other modules can judge, by its path (`joints[2].dh`,
-  /// `joints[2].limits.q_min`, `mount.links`, ...); 1 for any other.
+  /// `joints[2].limits.q_min_rad`, `mount.links`, ...); 1 for any other.
   int LineOf(const std::string& key) const;
   const Pose& X_WB() const { return X_WB_; }
   /// How many numbers a configuration has.
@@ -122,9 +120,8 @@ class RobotModel {
   SphereCenters ComputeSphereCenters(const Eigen::VectorXd& q, bool with_jacobian) const;
 
  private:
-  struct Places;  // where every joint axis and row frame is for one q
-  void ComputePlaces(const Eigen::VectorXd& q, Places& places) const;
-  Pose PoseOf(int link, const Places& places) const;
+  RowPlaces PlacesAt(const Eigen::VectorXd& q) const;
+  Pose PoseOf(int link, const RowPlaces& places) const;
 
   std::string name_, file_, base_;
   std::map<std::string, int> lines_;

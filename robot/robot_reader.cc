@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
@@ -29,7 +30,7 @@ class LinkNames {
     if (found != names_.end()) return static_cast<int>(found - names_.begin());
     return std::nullopt;
   }
-  // What is wrong is told under `key`, by item `where` of its list if it is one.
+  // The link that `text` names, or whose joint has that number; else it is told under `key`.
   int Resolve(const YamlReader& map, const std::string& key, const std::string& text) const {
     if (const std::optional<int> link = Find(text)) return *link;
     for (int number = -1; number < static_cast<int>(names_.size()); ++number) {

@@ -218,16 +218,13 @@ class Comparison {
                          InYamlOf(i, ".dh") + ", beyond joint '" + joint.name + "'");
   }
 
-  // Takes the turn of a joint out: seen so, the frame after a row of a table stands at (a, 0, d)
-  // whatever q is, and a link that turns is not turned.
+  // Takes the turn of a row of a table out: seen so, the frame after it stands at (a, 0, d)
+  // whatever q is. Identity for other joints.
   static Pose UnturnedBy(const robot::Joint& joint, const Eigen::VectorXd& q) {
-    if (joint.kind != robot::JointKind::kRevolute) return Pose();
+    if (!joint.dh || joint.kind != robot::JointKind::kRevolute) return Pose();
     const double angle = joint.multiplier * q(joint.coordinate) + joint.offset;
-    if (joint.dh) {
-      const Eigen::AngleAxisd turn(angle + joint.dh->theta_rad, Eigen::Vector3d::UnitZ());
-      return Pose(Eigen::Quaterniond(turn), Eigen::Vector3d::Zero()).Inverse();
-    }
-    return Pose();
+    const Eigen::AngleAxisd turn(angle + joint.dh->theta_rad, Eigen::Vector3d::UnitZ());
+    return Pose(Eigen::Quaterniond(turn), Eigen::Vector3d::Zero()).Inverse();
   }
 
   void CheckFrame(std::size_t i, const Frame& frame, const Difference& difference) const {

@@ -33,25 +33,6 @@ constexpr Entry kSensors[] = {
   throw scenarios::WrongValue(scenario, "sensor." + key, why, {"sensor.name"});
 }
 
-// The scenario must hold the settings that the sensor needs, and none of another's.
-void CheckSettings(const scenarios::Scenario& scenario, const Entry& entry) {
-  const scenarios::SensorSettings& sensor = scenario.sensor;
-  const std::string of = "the sensor '" + sensor.name + "'";
-  const struct {
-    std::string key;
-    bool given;
-  } maps[] = {{"noise", sensor.noise.has_value()},
-              {"camera", sensor.camera.has_value()},
-              {"tags", sensor.tags.has_value()},
-              {"tag_images", sensor.tag_images.has_value()}};
-  for (const auto& [key, given] : maps) {
-    if (given && entry.settings != key && entry.settings != key + "?") {
-      Fail(scenario, key, "is not for " + of);
-    }
-    if (!given && entry.settings == key) Fail(scenario, key, "is missing; " + of + " needs it");
-  }
-}
-
 }  // namespace
 
 std::vector<std::string> SensorNames() {
@@ -68,11 +49,29 @@ std::string MeaningOfSensor(const std::string& name) {
   throw std::invalid_argument("unknown sensor '" + name + "'");
 }
 
+void CheckSensorSettings(const scenarios::Scenario& scenario, std::string_view settings) {
+  const scenarios::SensorSettings& sensor = scenario.sensor;
+  const std::string of = "the sensor '" + sensor.name + "'";
+  const struct {
+    std::string key;
+    bool given;
+  } maps[] = {{"noise", sensor.noise.has_value()},
+              {"camera", sensor.camera.has_value()},
+              {"tags", sensor.tags.has_value()},
+              {"tag_images", sensor.tag_images.has_value()}};
+  for (const auto& [key, given] : maps) {
+    if (given && settings != key && settings != key + "?") {
+      Fail(scenario, key, "is not for " + of);
+    }
+    if (!given && settings == key) Fail(scenario, key, "is missing; " + of + " needs it");
+  }
+}
+
 std::unique_ptr<robot::Sensor> MakeSensor(const scenarios::Scenario& scenario, const World& world) {
   const scenarios::SensorSettings& settings = scenario.sensor;
   for (const Entry& entry : kSensors) {
     if (settings.name != entry.name) continue;
-    CheckSettings(scenario, entry);
+    CheckSensorSettings(scenario, entry.settings);
     std::unique_ptr<robot::Sensor> sensor = entry.make(scenario, world);
     const bool is_prompt =
         settings.latency_s == 0 && settings.jitter_s == 0 && settings.dropout == 0;

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sidestep/robot/sensor.h"
@@ -16,6 +17,10 @@ std::vector<std::string> SensorNames();
 
 /// What one sees, in a line. @throws std::invalid_argument for an unknown name.
 std::string MeaningOfSensor(const std::string& name);
+
+/// @param settings the map that the scenario's sensor needs, e.g. `tags`, or may have: `noise?`;
+/// empty: none. @throws InputError if it is missing, or one of another sensor is there.
+void CheckSensorSettings(const scenarios::Scenario& scenario, std::string_view settings);
 
 /// Makes a scenario's sensor in a world, which must outlive it.
 using SensorMaker =
