@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <utility>
+#include <variant>
 
 #include "sidestep/core/input_error.h"
 #include "sidestep/render/rendered_camera.h"
@@ -22,26 +23,10 @@ hardware::TaggedBody BodyOf(const std::string& name, const Eigen::Vector3d& size
   return body;
 }
 
-// The settings that it needs, and none of another sensor's.
-void CheckSettings(const scenarios::Scenario& scenario) {
-  const scenarios::SensorSettings& sensor = scenario.sensor;
-  for (const auto& [key, is_given] : {std::pair("noise", sensor.noise.has_value()),
-                                      std::pair("camera", sensor.camera.has_value()),
-                                      std::pair("tags", sensor.tags.has_value())}) {
-    if (!is_given) continue;
-    throw scenarios::WrongValue(scenario, std::string("sensor.") + key,
-                                "is not for the sensor 'tag_images'", {"sensor.name"});
-  }
-  if (!sensor.tag_images) {
-    throw scenarios::WrongValue(scenario, "sensor.tag_images",
-                                "is missing; the sensor 'tag_images' needs it", {"sensor.name"});
-  }
-}
-
 std::unique_ptr<robot::Sensor> MakeTagImages(const scenarios::Scenario& scenario,
                                              const sim::World& world,
                                              const std::optional<Pose>& X_WC = std::nullopt) {
-  CheckSettings(scenario);
+  sim::CheckSensorSettings(scenario, kTagImages);
   auto frames = std::make_unique<render::RenderedCamera>(scenario, world);
   hardware::TagSensorOptions options = TagSensorOptionsOf(scenario);
   if (X_WC) options.X_WC = *X_WC;
@@ -86,7 +71,7 @@ sim::SensorMaker CalibratedCamera(const scenarios::Scenario& scenario,
     throw InputError("--calibration", "is of a camera: the sensor is '" + scenario.sensor.name +
                                           "', not tag_images");
   }
-  CheckSettings(scenario);
+  sim::CheckSensorSettings(scenario, kTagImages);
   const auto why_not = hardware::WhyNotUsable(calibration, render::kRenderedSerial,
                                               render::IntrinsicsOf(scenario), today);
   if (why_not) throw InputError("--calibration", *why_not);

@@ -74,11 +74,6 @@ Eigen::Vector3d PositionAfter(const RandomWalkMotion& motion, double elapsed_s) 
   return WalkFor(motion, elapsed_s).p_WO;
 }
 
-// The level direction to the left of a level one.
-Eigen::Vector3d LeftOf(const Eigen::Vector3d& direction) {
-  return {-direction.y(), direction.x(), 0};
-}
-
 // The time on the walk's own clock.
 double WalkTime(const WalkMotion& motion, double elapsed_s) {
   return motion.speed_m_s / motion.pace_m_s.middle() * elapsed_s;
@@ -182,6 +177,10 @@ Pose PoseAt(const MovingObstacle& obstacle, EpisodeTime t) {
   const Pose X_WO = Pose::FromRollPitchYaw(obstacle.rpy_rad, p_WO);
   const std::optional<Eigen::Quaterniond> turn = TurnAt(obstacle, t);
   return turn ? Pose(*turn * X_WO.rotation(), p_WO) : X_WO;
+}
+
+Eigen::Vector3d LeftOf(const Eigen::Vector3d& direction) {
+  return {-direction.y(), direction.x(), 0};
 }
 
 Eigen::Vector3d DirectionAt(const Motion& motion, EpisodeTime t) {

@@ -244,6 +244,9 @@ Pose PoseAt(const MovingObstacle& obstacle, EpisodeTime t);
 /// it is RecordedTrack::Heading.
 Eigen::Vector3d DirectionAt(const Motion& motion, EpisodeTime t);
 
+/// The level direction to the left of a direction, as long as its level part.
+Eigen::Vector3d LeftOf(const Eigen::Vector3d& direction);
+
 /// The names of all scenarios in a folder, sorted.
 std::vector<std::string> ScenarioNames(const std::string& directory);
 

@@ -44,7 +44,7 @@ void Shift(RecordedMotion& motion, const Eigen::Vector3d& by_m) {
 
 void MoveLeft(Motion& motion, double by_m) {
   const Eigen::Vector3d way = DirectionAt(motion, EpisodeTime(0));
-  const Eigen::Vector3d left = Eigen::Vector3d(-way.y(), way.x(), 0).normalized();  // or zero
+  const Eigen::Vector3d left = LeftOf(way).normalized();  // or zero
   std::visit([&](auto& any) { Shift(any, by_m * left); }, motion);
 }
 

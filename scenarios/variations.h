@@ -13,8 +13,7 @@ namespace sidestep::scenarios {
 ///  - `speed_factor: [LEAST, MOST]`: they all go faster or slower by one factor (ScaleSpeeds);
 ///  - `delay_s: [LEAST, MOST]`: they all begin (and stop) later by one time;
 ///  - `sideways_m: [LEAST, MOST]`: they all go their way by one distance further to the left of
-///  where
-///    they go at first.
+///    where they go at first.
 /// Draws are even, and one does not depend on whether there is another. A scenario without moving
 /// obstacles draws nothing. @throws InputError FILE:LINE: KEY: WHY.
 void DrawVariations(const YamlReader& top, Scenario& scenario);

@@ -4,7 +4,9 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <string>
 
+#include "sidestep/planner/planner.h"
 #include "sidestep/record/questions.h"
 
 namespace sidestep::bench {
@@ -34,9 +36,10 @@ double ReplansCutShort(const record::Recording& recording) {
 }
 
 double ReplansShortOfGoal(const record::Recording& recording) {
+  const std::string short_of_goal = planner::ToString(planner::PlanStatus::kShortOfGoal);
   return static_cast<double>(
       std::count_if(recording.cycles.begin(), recording.cycles.end(),
-                    [](const CycleRecord& c) { return c.status == "short_of_goal"; }));
+                    [&](const CycleRecord& c) { return c.status == short_of_goal; }));
 }
 
 double SamplesOutsideGrid(const record::Recording& recording) {

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "sidestep/bench/validation/named_row.h"
 #include "sidestep/core/shape.h"
 
 namespace sidestep::bench {
@@ -59,8 +60,6 @@ Motion SpeedingUp(const Course& course, double speed_m_s, double acceleration_m_
                                       kNever,
                                       0};
 }
-
-Vector3d LeftOf(const Vector3d& direction) { return Vector3d(-direction.y(), direction.x(), 0); }
 
 // Through there first, then wherever.
 Motion Way(const Course& course, double speed_m_s, const Vector3d& then_m) {
@@ -131,7 +130,7 @@ constexpr Behaviour kBehaviours[] = {
      }},
     {"turn", "turns by 90 degrees from one moment to the next", kNever,
      [](const Course& course, double v, double) {
-       return Motions{Way(course, v, course.p_WThrough + 3 * LeftOf(course.across_W))};
+       return Motions{Way(course, v, course.p_WThrough + 3 * scenarios::LeftOf(course.across_W))};
      }},
 };
 
@@ -164,16 +163,13 @@ double ClearanceAtStart(const scenarios::Scenario& scenario, const robot::RobotM
 std::span<const Behaviour> Behaviours() { return kBehaviours; }
 
 const Behaviour& BehaviourOf(const std::string& name) {
-  for (const Behaviour& behaviour : kBehaviours) {
-    if (name == behaviour.name) return behaviour;
-  }
-  throw std::invalid_argument("no behaviour '" + name + "'");
+  return RowNamed(Behaviours(), "behaviour", name);
 }
 
 Course DrawCourse(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
                   RandomStream& random) {
   const auto tool = [&](const Eigen::VectorXd& q) {
-    return robot.ComputeLinkPoses(q).back().translation();
+    return robot.ComputeToolPose(q).translation();
   };
   const Vector3d p_WStart = tool(scenario.q_start), p_WGoal = tool(scenario.q_goal);
   const scenarios::MovingObstacle& obstacle = scenario.moving_obstacles.front();

@@ -1,6 +1,6 @@
 #include "sidestep/bench/validation/faults.h"
 
-#include <stdexcept>
+#include "sidestep/bench/validation/named_row.h"
 
 namespace sidestep::bench {
 namespace {
@@ -47,10 +47,7 @@ const ValidationFault kFaults[] = {
 std::span<const ValidationFault> ValidationFaults() { return kFaults; }
 
 const ValidationFault& ValidationFaultOf(const std::string& name) {
-  for (const ValidationFault& fault : kFaults) {
-    if (name == fault.name) return fault;
-  }
-  throw std::invalid_argument("no fault '" + name + "'");
+  return RowNamed(ValidationFaults(), "fault", name);
 }
 
 }  // namespace sidestep::bench

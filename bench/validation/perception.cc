@@ -1,11 +1,13 @@
 #include "sidestep/bench/validation/perception.h"
 
-#include <stdexcept>
+#include <numbers>
+
+#include "sidestep/bench/validation/named_row.h"
 
 namespace sidestep::bench {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
+constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kBegins_s = 2;  // what fails for a while does so in the middle of the motion
 
 const Perception kPerceptions[] = {
@@ -30,10 +32,7 @@ const Eigen::Vector3d kCamera_B(1.6, 0, 1.4);
 std::span<const Perception> Perceptions() { return kPerceptions; }
 
 const Perception& PerceptionOf(const std::string& name) {
-  for (const Perception& perception : kPerceptions) {
-    if (name == perception.name) return perception;
-  }
-  throw std::invalid_argument("no perception '" + name + "'");
+  return RowNamed(Perceptions(), "perception", name);
 }
 
 bool HasNoiseModel(const scenarios::Scenario& scenario) {

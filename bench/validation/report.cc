@@ -21,8 +21,7 @@ constexpr const char* kLadder[] = {
     "communication_test of libfranka and `ping -i 0.001 -s 1200`, with the machine and the network "
     "that will be used: at least 95 % of packets; below 90 % go no further.",
     "Read only: the robot's state, and the tags in the picture. Guide the arm by hand with a tag "
-    "at "
-    "its gripper: what the camera says and what the joints say differ by at most 10 mm.",
+    "at its gripper: what the camera says and what the joints say differ by at most 10 mm.",
     "Dry run: `sidestep hardware run SCENARIO --dry-run`, real perception and planning, the robot "
     "not moving.",
     "`sidestep hardware go-to-start SCENARIO`, the stop in your hand.",
@@ -39,16 +38,6 @@ constexpr const char* kNotCertified =
     "the supervisor, the camera or the computer they run on makes a robot safe for people, and the "
     "robot's own monitoring conforms with no safety norm. The external activation device is no "
     "emergency stop. Nobody is within reach of the arm, ever.";
-
-// Text as it is to be read in a cell of a table.
-std::string Plain(const std::string& text) {
-  std::string plain;
-  for (const char c : text) {
-    if (c == '|') plain += '\\';
-    plain += static_cast<unsigned char>(c) < 32 ? ' ' : c;
-  }
-  return plain;
-}
 
 const StudyRow* RowOf(const std::string& name, const std::vector<StudyRow>& rows) {
   const auto found = std::find_if(rows.begin(), rows.end(),
@@ -68,8 +57,8 @@ std::string ItemTable(const std::vector<JudgedItem>& items) {
     const std::string verdict = ToString(finding.verdict);
     const bool stands_out = finding.verdict == ItemVerdict::kFail;
     text += fmt::format("| {} | {} | {} | {} | {} |\n", item.number, item.name,
-                        stands_out ? "**" + verdict + "**" : verdict, Plain(item.requirement),
-                        Plain(finding.evidence));
+                        stands_out ? "**" + verdict + "**" : verdict, TableCell(item.requirement),
+                        TableCell(finding.evidence));
   }
   return text;
 }
@@ -81,7 +70,7 @@ std::string WorstCases(const std::vector<JudgedItem>& items, const std::vector<S
     const char* const what = finding.verdict == ItemVerdict::kFail ? "fails in" : "at the worst";
     text += fmt::format("\n**{}. {}**, {}\n\n", item.number, item.name, what);
     for (const NamedCase& one : finding.worst) {
-      text += fmt::format("- `{}`: {}\n", one.name, Plain(one.what));
+      text += fmt::format("- `{}`: {}\n", one.name, TableCell(one.what));
       const StudyRow* const row = RowOf(one.name, rows);
       if (row != nullptr) text += fmt::format("\n      {}\n\n", row->command);
     }
@@ -92,7 +81,8 @@ std::string WorstCases(const std::vector<JudgedItem>& items, const std::vector<S
 std::string FailedCases(const std::vector<StudyRow>& rows) {
   std::string text;
   for (const StudyRow& row : rows) {
-    if (row.outcome == kFailed) text += fmt::format("- `{}`: {}\n", NameOf(row), Plain(row.error));
+    if (row.outcome == kFailed)
+      text += fmt::format("- `{}`: {}\n", NameOf(row), TableCell(row.error));
   }
   return text.empty() ? "" : "\nCould not be run:\n\n" + text;
 }
@@ -118,7 +108,7 @@ std::string ValidationPage(const ValidationTitle& title, const std::vector<Judge
   std::string text = fmt::format(
       "# Validation of {} in {}\n\n**{}**\n\n{}\n\n- {} of {} episodes, made by\n\n"
       "      {}\n\n- seen by: {}\n\n## Items\n\n",
-      title.planner, Plain(title.scenario), VerdictLine(items), kNotCertified, rows.size(),
+      title.planner, TableCell(title.scenario), VerdictLine(items), kNotCertified, rows.size(),
       title.num_cases, title.command, title.sensor);
   text += ItemTable(items);
   text += "\n## The worst cases, and how to run them again\n" + WorstCases(items, rows);

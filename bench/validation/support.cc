@@ -62,7 +62,20 @@ std::vector<NamedCase> WorstOf(const std::vector<Told>& told, double limit, cons
 
 ItemFinding NothingRun(const std::string& why) { return {ItemVerdict::kNotRun, why, {}}; }
 
-bool IsToldToMove(const ControlSample& tick) { return tick.v_command.norm() > kMoving_rad_s; }
+bool IsMoving(const Eigen::VectorXd& v) { return v.norm() > kMoving_rad_s; }
+
+bool IsToldToMove(const ControlSample& tick) { return IsMoving(tick.v_command); }
+
+double FastestSphere_m_s(const robot::RobotModel& robot, const ControlSample& tick) {
+  const robot::SphereCenters centers =
+      robot.ComputeSphereCenters(tick.q_command, /*with_jacobian=*/true);
+  double fastest_m_s = 0;
+  for (Eigen::Index s = 0; s < centers.p_WS.cols(); ++s) {
+    const Eigen::Vector3d v_m_s = centers.Jq.middleRows(3 * s, 3) * tick.v_command;
+    fastest_m_s = std::max(fastest_m_s, v_m_s.norm());
+  }
+  return fastest_m_s;
+}
 
 const ControlSample* TickAt(const record::Recording& recording, EpisodeTime t) {
   const std::vector<ControlSample>& ticks = recording.control;

@@ -37,8 +37,12 @@ std::vector<NamedCase> WorstOf(const std::vector<Told>& told, double limit, cons
 /// What an item says where no row tells anything.
 ItemFinding NothingRun(const std::string& why);
 
+/// Whether joints of these velocities move: those of an arm at rest are noise.
+bool IsMoving(const Eigen::VectorXd& v);
 /// Whether the arm is told to move at a tick.
 bool IsToldToMove(const ControlSample& tick);
+/// How fast the fastest sphere of the arm is told to move at a tick [m/s].
+double FastestSphere_m_s(const robot::RobotModel& robot, const ControlSample& tick);
 /// The latest tick at or before `t`, or the first one; null: there is none.
 const ControlSample* TickAt(const record::Recording& recording, EpisodeTime t);
 

@@ -1,6 +1,6 @@
 #include "sidestep/bench/validation/timing.h"
 
-#include <stdexcept>
+#include "sidestep/bench/validation/named_row.h"
 
 namespace sidestep::bench {
 namespace {
@@ -17,11 +17,6 @@ constexpr Timing kTimings[] = {
 
 std::span<const Timing> Timings() { return kTimings; }
 
-const Timing& TimingOf(const std::string& name) {
-  for (const Timing& timing : kTimings) {
-    if (name == timing.name) return timing;
-  }
-  throw std::invalid_argument("no timing '" + name + "'");
-}
+const Timing& TimingOf(const std::string& name) { return RowNamed(Timings(), "timing", name); }
 
 }  // namespace sidestep::bench

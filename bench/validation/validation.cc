@@ -10,13 +10,13 @@
 #include "sidestep/bench/validation/faulty_sensor.h"
 #include "sidestep/bench/validation/perception.h"
 #include "sidestep/bench/validation/random_obstacle.h"
+#include "sidestep/bench/validation/support.h"
 #include "sidestep/bench/validation/timing.h"
 
 namespace sidestep::bench {
 namespace {
 
-constexpr double kGivesUp_s = 3;  // who has not moved for so long
-constexpr double kMoving_rad_s = 1e-3;
+constexpr double kGivesUp_s = 3;                   // who has not moved for so long
 constexpr int kGuesses = 20;                       // of the search for a free motion
 constexpr const char* kReferencePlanner = "gpmp";  // that searches
 constexpr const char* kGaveUp = "it does not get on";
@@ -129,7 +129,7 @@ ValidationEpisode RunValidationCase(const ValidationCase& one, const ValidationS
     EpisodeOptions options;
     options.why_stop = [&]() -> std::string {
       const JointState state = arm->Read();
-      if (state.v.norm() > kMoving_rad_s) moved_s = state.t.seconds();
+      if (IsMoving(state.v)) moved_s = state.t.seconds();
       gave_up = state.t.seconds() > moved_s + kGivesUp_s;
       return gave_up ? kGaveUp : why_stop();
     };

@@ -7,15 +7,13 @@
 
 #include "sidestep/bench/resolve.h"
 #include "sidestep/bench/validation/random_obstacle.h"
+#include "sidestep/bench/validation/support.h"
 #include "sidestep/record/questions.h"
 #include "sidestep/sim/simulation.h"
 
 namespace sidestep {
 namespace {
 
-using Eigen::Vector3d;
-
-constexpr double kMoving_rad_s = 1e-3;
 constexpr double kHorizons = 3;   // who waits for a box to pass needs longer than two
 constexpr double kGivesUp_s = 5;  // who has not moved for so long
 
@@ -38,18 +36,6 @@ void Describe(const scenarios::Motion& motion, SupervisedEpisode& episode) {
     episode.speed_m_s = circle->speed_m_s;
     episode.acceleration_m_s2 = circle->speed_m_s * circle->speed_m_s / circle->radius_m;
   }
-}
-
-// The speed of the fastest sphere of the arm.
-double FastestSphere(const robot::RobotModel& robot, const ControlSample& tick) {
-  const robot::SphereCenters centers =
-      robot.ComputeSphereCenters(tick.q_command, /*with_jacobian=*/true);
-  double fastest_m_s = 0;
-  for (Eigen::Index s = 0; s < centers.p_WS.cols(); ++s) {
-    const Vector3d v_m_s = centers.Jq.middleRows(3 * s, 3) * tick.v_command;
-    fastest_m_s = std::max(fastest_m_s, v_m_s.norm());
-  }
-  return fastest_m_s;
 }
 
 scenarios::Scenario LoadBase(const std::string& source_dir) {
@@ -91,7 +77,7 @@ bench::EpisodeResult SupervisedEpisodes::RunWhole(const scenarios::Scenario& sce
   double moved_s = 0;
   options.why_stop = [&]() -> std::string {
     const JointState state = arm->Read();
-    if (state.v.norm() > kMoving_rad_s) moved_s = state.t.seconds();
+    if (bench::IsMoving(state.v)) moved_s = state.t.seconds();
     return state.t.seconds() > moved_s + kGivesUp_s ? "it does not get on" : "";
   };
   return bench::RunEpisode(scenario, robot_, make_world, options);
@@ -117,8 +103,8 @@ SupervisedEpisode SupervisedEpisodes::Run(std::uint64_t seed) const {
     episode.touch_s = touch->t.seconds();
     for (const ControlSample& tick : result.recording.control) {
       if (std::abs((tick.t - touch->t).seconds()) >= 2e-3) continue;
-      if (tick.v_command.norm() > kMoving_rad_s) episode.touched_in_motion = true;
-      episode.touch_m_s = std::max(episode.touch_m_s, FastestSphere(robot_, tick));
+      if (bench::IsToldToMove(tick)) episode.touched_in_motion = true;
+      episode.touch_m_s = std::max(episode.touch_m_s, bench::FastestSphere_m_s(robot_, tick));
     }
   }
   return episode;

@@ -11,17 +11,6 @@ namespace {
 
 constexpr double kSameMoment_s = 2e-3;
 
-// The speed of the fastest sphere of the arm.
-double FastestPart(const robot::RobotModel& robot, const ControlSample& tick) {
-  const robot::SphereCenters centers = robot.ComputeSphereCenters(tick.q_command, true);
-  double fastest_m_s = 0;
-  for (Eigen::Index s = 0; s < centers.p_WS.cols(); ++s) {
-    const Eigen::Vector3d v_m_s = centers.Jq.middleRows(3 * s, 3) * tick.v_command;
-    fastest_m_s = std::max(fastest_m_s, v_m_s.norm());
-  }
-  return fastest_m_s;
-}
-
 Facts Measure(const ValidationRun& run) {
   const record::Recording& recording = run.result.recording;
   if (recording.truth.empty()) return {};
@@ -36,7 +25,7 @@ Facts Measure(const ValidationRun& run) {
       const ControlSample* const tick = TickAt(recording, t + HorizonOffset(aside_s));
       if (tick == nullptr || !IsToldToMove(*tick)) continue;
       moves = true;
-      speed_m_s = std::max(speed_m_s, FastestPart(run.robot, *tick));
+      speed_m_s = std::max(speed_m_s, FastestSphere_m_s(run.robot, *tick));
     }
     (moves ? in_motion : at_rest) = true;
   }

@@ -41,8 +41,7 @@ ItemFinding Judge(const Evidence& evidence) {
   finding.verdict = passes ? ItemVerdict::kPass : ItemVerdict::kFail;
   finding.evidence = fmt::format(
       "{:.0f} of {:.0f} ticks without a stop within the limits; the longest stop takes {:.3f} s "
-      "and "
-      "{:.0f} mm of the arm's fastest part, straight",
+      "and {:.0f} mm of the arm's fastest part, straight",
       SumOf(without), SumOf(LargestFirst(evidence, "ticks", all)), times.front().value,
       1e3 * ways.front().value);
   if (SumOf(without) > 0) {
