@@ -335,7 +335,7 @@ const std::vector<ModuleRule>& ModuleRules() {
        {"core", "record", "robot", "scenarios", "sim"},
        {"mujoco/", "GL/", "libavcodec/", "libavformat/", "libavutil/", "libswscale/"}},
       {"import",
-       {"core", "robot", "sdf"},
+       {"core", "robot", "sdf", "scenarios"},
        {"urdf_parser/", "urdf_model/", "assimp/", "tinyxml2.h"}},
       {"cli",
        {"core", "record", "robot", "sdf", "planner", "control", "scenarios", "sim", "hardware",
