@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -14,6 +13,7 @@
 #include "sidestep/sim/arm_file.h"
 #include "sidestep/sim/simulation.h"
 #include "tests/sim/two_link.h"
+#include "tests/support/bytes_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace sidestep::sim {
@@ -22,12 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::string kBadModels = SIDESTEP_SOURCE_DIR "/tests/data/bad_models/";
-
-std::string TextOf(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
 
 // What follows `label` on the next line.
 std::string NextLine(std::istream& stream, const std::string& label) {
@@ -47,7 +41,7 @@ class AlteredTwoLink {
 
   void Replace(const std::string& file, const std::string& old_text, const std::string& new_text) {
     const std::string path = (models_ / "two_link" / file).string();
-    std::string text = TextOf(path);
+    std::string text = BytesOf(path);
     const std::size_t at = text.find(old_text);
     ASSERT_NE(at, std::string::npos) << file << " has no " << old_text;
     text.replace(at, old_text.size(), new_text);
