@@ -102,12 +102,6 @@ std::vector<std::string> ShortValues(const std::vector<bench::ResultSummary>& re
   return count(rounded) == count(values) ? rounded : values;
 }
 
-// Texts of files may hold line ends.
-std::string OneLine(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
-
 using Line = std::vector<std::string>;
 
 void PrintTable(const std::vector<Line>& lines, std::size_t num_words) {

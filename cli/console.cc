@@ -1,5 +1,6 @@
 #include "sidestep/cli/console.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -26,6 +27,11 @@ void CheckOutput(bool is_written) {
 
 void PrintText(std::string_view text) { CheckOutput(Write(text, stdout)); }
 void PrintErrorText(std::string_view text) { Write(text, stderr); }
+
+std::string OneLine(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text.substr(0, text.find_last_not_of(' ') + 1);
+}
 
 void FinishOutput() { CheckOutput(std::fflush(stdout) == 0); }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -22,6 +23,9 @@ template <typename... Values>
 void PrintError(fmt::format_string<Values...> format, Values&&... values) {
   PrintErrorText(fmt::format(format, std::forward<Values>(values)...));
 }
+
+/// Text of a file, which may hold line ends, in one line: spaces instead, and none at the end.
+std::string OneLine(std::string text);
 
 /// Call once a command is done: hands on what is still held back. @throws InputError as PrintText.
 void FinishOutput();

@@ -26,9 +26,6 @@
 namespace sidestep::cli {
 namespace {
 
-constexpr render::Color kInk{20, 20, 30};
-constexpr int kLetters = 14, kLeft = 48;  // pixels
-
 struct FieldOptions {
   ScenarioOptions scenario;
   std::string out;
@@ -111,7 +108,7 @@ render::Image Slice(const Belief& belief, const GridSpec& grid, EpisodeTime t, d
 // What the colours mean: a bar from solid to far with its ends in metres.
 void DrawScale(render::Image& image, int y, double reach_m, const render::Font& font) {
   constexpr int kHeight = 12, kLength = 160;
-  double x = font.Draw(image, kLeft, y, kLetters, kInk, "solid ");
+  double x = font.Draw(image, kPlotLeft, y, kLetters, kInk, "solid ");
   image.Fill({static_cast<int>(x), y + 1, 2 * kHeight, kHeight}, ColorOf(-1, reach_m));
   x = font.Draw(image, x + 2 * kHeight + 12, y, kLetters, kInk, "0 ");
   for (int n = 0; n < kLength; ++n) {
@@ -159,8 +156,8 @@ int DrawField(const FieldOptions& options) {
   const int width = slices.front().width(), height = slices.front().height();
   render::Image image(std::max(width * static_cast<int>(slices.size()), 400),
                       kHead + height + kScale);
-  image.Fill({0, 0, image.width(), image.height()}, {255, 255, 255});
-  font.Draw(image, kLeft, 4, kLetters, kInk, TitleOf(scene.scenario, options.time_s));
+  image.Fill({0, 0, image.width(), image.height()}, kPaper);
+  font.Draw(image, kPlotLeft, 4, kLetters, kInk, TitleOf(scene.scenario, options.time_s));
   for (std::size_t i = 0; i < slices.size(); ++i) {
     image.Paste(slices[i], width * static_cast<int>(i), kHead);
   }

@@ -10,7 +10,6 @@
 namespace sidestep::cli {
 namespace {
 
-constexpr render::Color kPaper{255, 255, 255}, kInk{20, 20, 30};
 constexpr render::Color kSolid{110, 110, 120}, kBelieved{70, 160, 255}, kPlace{60, 255, 60};
 constexpr int kInset = 12, kLine = 18, kBar = 14;  // pixels
 

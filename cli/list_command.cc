@@ -33,12 +33,6 @@ struct Kind {
   std::vector<Item> items;
 };
 
-// Texts of files may hold line ends.
-std::string OneLine(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text.substr(0, text.find_last_not_of(' ') + 1);
-}
-
 // A line for each choice that a scenario leaves open.
 std::string ChoicesOf(const std::string& scenario_file) {
   std::string lines;

@@ -6,7 +6,7 @@
 namespace sidestep::cli {
 namespace {
 
-const std::string kVersion = "version.";  // begins the keys of the versions in a header
+const std::string kVersionKey = "version.";  // begins the keys of the versions in a header
 
 }  // namespace
 
@@ -18,19 +18,19 @@ std::map<std::string, std::string> Provenance(const bench::RunIdentity& identity
   std::map<std::string, std::string> facts = {{"identity.run", bench::RunId(identity)},
                                               {"identity.scenario", identity.scenario},
                                               {"identity.models", identity.models}};
-  for (const auto& [part, version] : Versions()) facts[kVersion + part] = version;
+  for (const auto& [part, version] : Versions()) facts[kVersionKey + part] = version;
   return facts;
 }
 
 bench::RunIdentity IdentityIn(const std::map<std::string, std::string>& header) {
   return {header.at("identity.scenario"), header.at("identity.models"),
-          header.at(kVersion + "build_id"), ""};
+          header.at(kVersionKey + "build_id"), ""};
 }
 
 std::map<std::string, std::string> VersionsIn(const std::map<std::string, std::string>& header) {
   std::map<std::string, std::string> versions;
   for (const auto& [key, value] : header) {
-    if (key.starts_with(kVersion)) versions[key.substr(kVersion.size())] = value;
+    if (key.starts_with(kVersionKey)) versions[key.substr(kVersionKey.size())] = value;
   }
   return versions;
 }

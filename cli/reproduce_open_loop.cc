@@ -65,7 +65,7 @@ bench::OpenLoopStudyOptions MakeStudyOptions(const OpenLoopCommand& command, int
 }
 
 // One line that is rewritten on a terminal; elsewhere a line at every tenth of the work.
-void ShowProgress(int done, int all) {
+void ReportRows(int done, int all) {
   if (isatty(STDERR_FILENO) != 0) {
     PrintError("\r{} of {} rows{}", done, all, done == all ? "\n" : "");
   } else if (done * 10 / all != (done - 1) * 10 / all) {
@@ -96,7 +96,7 @@ int Run(const std::string& name, const OpenLoopCommand& command) {
                                         {"rows.csv", "statistics.json", "figure.gp", "index.html"});
 
   const bench::OpenLoopStudy study =
-      bench::RunOpenLoopStudy(experiment, FindDataPaths().models, options, ShowProgress);
+      bench::RunOpenLoopStudy(experiment, FindDataPaths().models, options, ReportRows);
   const bench::CsvTable table = bench::MakeOpenLoopTable(study);
   WriteFile(out + "/rows.csv", table.ToText());
   const std::vector<bench::MatchedOutcomes> outcomes = bench::ReadOutcomes(table);

@@ -8,10 +8,8 @@
 namespace sidestep::cli {
 namespace {
 
-constexpr render::Color kPaper{255, 255, 255}, kInk{20, 20, 30};
-constexpr int kTick = 5, kLetters = 14, kGap = 4;  // pixels
-constexpr int kLeft = 48, kTitle = kLetters + 2 * kGap, kBottom = kTick + kLetters + 2 * kGap,
-              kRight = 16;
+constexpr int kTick = 5, kGap = 4;  // pixels
+constexpr int kTitle = kLetters + 2 * kGap, kBottom = kTick + kLetters + 2 * kGap, kRight = 16;
 constexpr double kPixelsATick = 60;
 
 std::string Label(double value_m, double step_m) {
@@ -50,21 +48,21 @@ render::Image WithAxes(const render::Image& slice, const SliceExtent& extent,
                        const std::string& title, const render::Font& font) {
   const int width = slice.width(), height = slice.height();
   const int top = title.empty() ? kLetters / 2 : kTitle;  // the uppermost tick has a number
-  render::Image image(kLeft + width + kRight, top + height + kBottom);
+  render::Image image(kPlotLeft + width + kRight, top + height + kBottom);
   image.Fill({0, 0, image.width(), image.height()}, kPaper);
-  font.Draw(image, kLeft, kGap, kLetters, kInk, title);
-  image.Outline({kLeft - 1, top - 1, width + 2, height + 2}, kInk, 1);
-  image.Paste(slice, kLeft, top);
+  font.Draw(image, kPlotLeft, kGap, kLetters, kInk, title);
+  image.Outline({kPlotLeft - 1, top - 1, width + 2, height + 2}, kInk, 1);
+  image.Paste(slice, kPlotLeft, top);
   ForEachTick(extent.x_low_m, extent.x_high_m, width, [&](int pixel, const std::string& label) {
-    image.Fill({kLeft + pixel, top + height, 1, kTick}, kInk);
-    font.Draw(image, kLeft + pixel - font.Width(label, kLetters) / 2, top + height + kTick + kGap,
-              kLetters, kInk, label);
+    image.Fill({kPlotLeft + pixel, top + height, 1, kTick}, kInk);
+    font.Draw(image, kPlotLeft + pixel - font.Width(label, kLetters) / 2,
+              top + height + kTick + kGap, kLetters, kInk, label);
   });
   ForEachTick(extent.y_low_m, extent.y_high_m, height, [&](int pixel, const std::string& label) {
     const int y = top + height - 1 - pixel;
-    image.Fill({kLeft - kTick, y, kTick, 1}, kInk);
-    font.Draw(image, kLeft - kTick - kGap - font.Width(label, kLetters), y - kLetters / 2, kLetters,
-              kInk, label);
+    image.Fill({kPlotLeft - kTick, y, kTick, 1}, kInk);
+    font.Draw(image, kPlotLeft - kTick - kGap - font.Width(label, kLetters), y - kLetters / 2,
+              kLetters, kInk, label);
   });
   font.Draw(image, kGap, top + height + kTick + kGap, kLetters, kInk, "m");
   return image;

@@ -8,6 +8,9 @@
 
 namespace sidestep::cli {
 
+inline constexpr render::Color kPaper{255, 255, 255}, kInk{20, 20, 30};
+inline constexpr int kLetters = 14, kPlotLeft = 48;  // pixels: of the text, and left of the picture
+
 /// What a picture of a level slice shows of the world, edge to edge [m].
 struct SliceExtent {
   double x_low_m = 0, x_high_m = 0, y_low_m = 0, y_high_m = 0;

@@ -18,6 +18,7 @@
 #include "sidestep/bench/task_pool.h"
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
+#include "sidestep/cli/jobs_option.h"
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/provenance.h"
@@ -31,7 +32,6 @@
 namespace sidestep::cli {
 namespace {
 
-constexpr int kMaxJobs = 256;
 constexpr std::size_t kFailuresShown = 5;
 
 struct StudyOptions {
@@ -260,8 +260,7 @@ void AddStudyCommand(CommandLine& line) {
                     "varies]");
   study->add_option("--across", options->axes.across,
                     "What it lists across: knowledge, predictor, ... [what varies]");
-  study->add_option("-j,--jobs", options->jobs, "Episodes at a time [the number of cores]")
-      ->check(NumberFrom(1, kMaxJobs));
+  AddJobsOption(*study, options->jobs);
   study
       ->add_option("--traces", options->traces,
                    "Traces to keep: none, failures (all that did not reach the goal), all; of an "
@@ -273,7 +272,6 @@ void AddStudyCommand(CommandLine& line) {
   study->add_option("--out", options->out, "Folder for the results [out/study/SCENARIO]");
   study->callback([&line, options] {
     options->command = line.text;
-    if (options->jobs == 0) options->jobs = std::min(bench::NumProcessors(), kMaxJobs);
     line.exit_code = Study(*options, FindDataPaths()).Run();
   });
 }

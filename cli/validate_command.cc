@@ -16,6 +16,7 @@
 #include "sidestep/bench/validation/validation.h"
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
+#include "sidestep/cli/jobs_option.h"
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/option_lists.h"
 #include "sidestep/cli/out_folder.h"
@@ -35,7 +36,6 @@
 namespace sidestep::cli {
 namespace {
 
-constexpr int kMaxJobs = 256;
 constexpr const char* kFiles[] = {"validation.md", "validation.json", "validation.csv"};
 
 struct ValidateOptions {
@@ -262,8 +262,7 @@ void AddValidateCommand(CommandLine& line) {
       ->check(NumberFrom(1, 1000000));
   validate->add_option("--only", options->only,
                        "Run this case of the report alone, and keep its trace.h5 and result.json");
-  validate->add_option("-j,--jobs", options->jobs, "Episodes at a time [the number of cores]")
-      ->check(NumberFrom(1, kMaxJobs));
+  AddJobsOption(*validate, options->jobs);
   validate->add_option("--out", options->out,
                        "Folder for the report [out/SCENARIO/validate_PLANNER]");
   validate->footer(
@@ -271,7 +270,6 @@ void AddValidateCommand(CommandLine& line) {
       "interrupted, 2 bad input. docs/validation.md says what is required, and why.");
   validate->callback([&line, options] {
     options->command = line.text;
-    if (options->jobs == 0) options->jobs = std::min(bench::NumProcessors(), kMaxJobs);
     line.exit_code = Validation(*options, FindDataPaths()).Run();
   });
 }
