@@ -71,6 +71,9 @@ add_custom_target(unit_tests)
 # Sanitized programs take long to start, and there are thousands of cases.
 option(SIDESTEP_WHOLE_TEST_PROGRAMS "ctest runs test programs, not each of their cases" OFF)
 
+# Of the files of tests alone, such as checks of the compiler that are for what is tested.
+set(SIDESTEP_TEST_OPTIONS "" CACHE STRING "Compile the files of tests with these options too")
+
 # sidestep_test(<folder>/<name>_test [SOURCES <further file>...] DEPENDS <target>...
 #               [SLOW | HEAVY | THREADED])
 #
@@ -89,6 +92,7 @@ function(sidestep_test path)
   target_link_libraries(${target} PRIVATE ${ARG_DEPENDS} GTest::gtest_main GTest::gmock
                                           sidestep_warnings)
   target_compile_features(${target} PRIVATE cxx_std_20)
+  target_compile_options(${target} PRIVATE ${SIDESTEP_TEST_OPTIONS})
   sidestep_use_precompiled_headers(${target} sidestep_precompiled_test)
   get_filename_component(folder ${path} DIRECTORY)
   set(properties TIMEOUT 600)

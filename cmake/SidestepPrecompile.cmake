@@ -42,4 +42,5 @@ set_target_properties(sidestep_precompiled_module PROPERTIES POSITION_INDEPENDEN
 if(SIDESTEP_BUILD_TESTS)
   sidestep_precompiled_headers(sidestep_precompiled_test HEADERS ${common} <gmock/gmock.h>
                                DEPENDS Eigen3::Eigen GTest::gmock)
+  target_compile_options(sidestep_precompiled_test PRIVATE ${SIDESTEP_TEST_OPTIONS})
 endif()
