@@ -9,6 +9,7 @@
 #include "sidestep/core/fingerprint.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/number_text.h"
+#include "sidestep/robot/model_name.h"
 
 namespace sidestep::bench {
 namespace {
@@ -51,7 +52,7 @@ RunIdentity IdentifyRun(const scenarios::Scenario& scenario, const std::string& 
     text.Add(key);
     text.Add(ShortestText(value));
   }
-  std::set<std::string> names = {scenario.robot};
+  std::set<std::string> names = {robot::ModelFolder(scenario.robot)};
   for (const scenarios::MovingObstacle& obstacle : scenario.moving_obstacles) {
     names.insert(obstacle.appearance);
   }

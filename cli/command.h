@@ -19,6 +19,7 @@ void AddListCommand(CommandLine& line);
 void AddCompareCommand(CommandLine& line);
 void AddAuditCommand(CommandLine& line);
 void AddBenchCommand(CommandLine& line);
+void AddCheckRobotCommand(CommandLine& line);
 void AddSalvageCommand(CommandLine& line);
 void AddRenderCommand(CommandLine& line);
 void AddReproduceCommand(CommandLine& line);

@@ -63,6 +63,7 @@ int Run(int argc, char** argv) {
   sidestep::cli::AddAuditCommand(line);
   sidestep::cli::AddBenchCommand(line);
   sidestep::cli::AddListCommand(line);
+  sidestep::cli::AddCheckRobotCommand(line);
   sidestep::cli::AddDoctorCommand(line);
   sidestep::cli::AddFieldCommand(line);
   sidestep::cli::AddHardwareCommand(line);

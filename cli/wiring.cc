@@ -9,6 +9,7 @@
 #include "sidestep/cli/sensors.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
+#include "sidestep/robot/model_name.h"
 #include "sidestep/scenarios/variations.h"
 #include "sidestep/sdf/prediction/registry.h"
 #include "sidestep/sdf/world_model.h"
@@ -118,9 +119,10 @@ scenarios::Scenario LoadOverridden(const std::string& name, const Overrides& ove
 
 Problem AddRobot(scenarios::Scenario scenario, const DataPaths& paths) {
   bench::ResolvePlanner(scenario);
-  CheckWord(scenario, "robot.model", scenario.robot, ModelNames(paths.models, "robot.yaml"));
+  CheckWord(scenario, "robot.model", robot::ModelFolder(scenario.robot),
+            ModelNames(paths.models, "robot.yaml"));
   robot::RobotModel robot = robot::RobotModel::Load(paths.models, scenario.robot, scenario.X_WB);
-  const std::string mjcf = paths.models + "/" + scenario.robot + "/" + scenario.robot + ".xml";
+  const std::string mjcf = robot::MjcfPath(paths.models, scenario.robot);
   sim::CheckAgreement(robot, *sim::LoadArmFile(mjcf), mjcf);
   bench::ResolveTask(scenario, robot);
   return {std::move(scenario), std::move(robot)};

@@ -9,6 +9,7 @@
 #include "sidestep/core/joined.h"
 #include "sidestep/core/yaml_reader.h"
 #include "sidestep/robot/limit_keys.h"
+#include "sidestep/robot/model_name.h"
 #include "sidestep/robot/robot_model.h"
 
 namespace sidestep::robot {
@@ -16,6 +17,43 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kMostJoints = 128;  // with those that are fixed
+
+// A robot.yaml, or a variant, which says the spheres anew and, if it likes, which links can reach
+// each other; everything else is as in the robot.yaml that it extends.
+class RobotFile {
+ public:
+  explicit RobotFile(const std::string& path) : path_(path), robot_(YamlReader::FromFile(path)) {
+    if (!robot_.Has("extends")) return;
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    path_ = (folder / robot_.GetString("extends")).string();
+    variant_ = std::move(robot_);
+    robot_ = YamlReader::FromFile(path_);
+    if (robot_.Has("extends")) variant_->Fail("extends", "must be a whole robot, is a variant");
+  }
+
+  /// Of the whole robot.
+  const std::string& path() const { return path_; }
+  const YamlReader& robot() const { return robot_; }
+  bool is_variant() const { return variant_.has_value(); }
+  /// Where spheres are, and which of them are at the mount.
+  const YamlReader& of_spheres() const {
+    robot_.Has("spheres");  // known, though a variant has others
+    return variant_ ? *variant_ : robot_;
+  }
+  const YamlReader& of_self_collision() const {
+    robot_.Has("self_collision");
+    return variant_ && variant_->Has("self_collision") ? *variant_ : robot_;
+  }
+  void CheckNoUnknownKeys() const {
+    if (variant_) variant_->CheckNoUnknownKeys();
+    robot_.CheckNoUnknownKeys();
+  }
+
+ private:
+  std::string path_;
+  YamlReader robot_;
+  std::optional<YamlReader> variant_;
+};
 
 // Links by name, in the order of the joints that carry them. A number stands for a joint of the
 // list, -1 for the base.
@@ -287,23 +325,26 @@ std::vector<std::string> RobotModel::ListNames(const std::string& models_dir) {
 RobotModel RobotModel::Load(const std::string& models_dir, const std::string& name,
                             const Pose& X_WB) {
   const std::vector<std::string> names = ListNames(models_dir);
-  if (std::find(names.begin(), names.end(), name) == names.end()) {
-    throw InputError(models_dir, "holds no robot '" + name +
+  const std::string folder = ModelFolder(name), variant = ModelVariant(name);
+  if (std::find(names.begin(), names.end(), folder) == names.end()) {
+    throw InputError(models_dir, "holds no robot '" + folder +
                                      "' (known: " + (names.empty() ? "none" : Joined(names)) + ")");
   }
-  const std::string path = models_dir + "/" + name + "/robot.yaml";
+  const std::string path =
+      models_dir + "/" + folder + "/" + (variant.empty() ? "robot" : variant) + ".yaml";
   RobotModel model = FromFile(path, X_WB);
-  if (model.name() != name) {
+  if (model.name() != folder) {
     throw InputError(path, "name: must be the folder's, is '" + model.name() + "'");
   }
   return model;
 }
 
 RobotModel RobotModel::FromFile(const std::string& path, const Pose& X_WB) {
-  const YamlReader file = YamlReader::FromFile(path);
+  const RobotFile whole(path);
+  const YamlReader& file = whole.robot();
   RobotModel model;
   model.X_WB_ = X_WB;
-  model.file_ = path;
+  model.file_ = whole.path();
   model.name_ = file.GetString("name");
   model.base_ = file.Has("base") ? file.GetString("base") : "base";
 
@@ -345,10 +386,10 @@ RobotModel RobotModel::FromFile(const std::string& path, const Pose& X_WB) {
   }
 
   const LinkNames& links = reader.links();
-  for (const YamlReader& sphere : file.GetMaps("spheres")) {
+  for (const YamlReader& sphere : whole.of_spheres().GetMaps("spheres")) {
     model.spheres_.push_back(ReadSphere(sphere, links));
   }
-  if (model.spheres_.empty()) file.Fail("spheres", "must not be empty");
+  if (model.spheres_.empty()) whole.of_spheres().Fail("spheres", "must not be empty");
   model.radii_m_.resize(model.num_spheres());
   for (int s = 0; s < model.num_spheres(); ++s) {
     model.radii_m_(s) = model.spheres_[static_cast<std::size_t>(s)].radius_m;
@@ -380,13 +421,20 @@ RobotModel RobotModel::FromFile(const std::string& path, const Pose& X_WB) {
       ReadConfigurations(file.GetMap("configurations"), model.joint_names_, model.limits_);
 
   const YamlReader mount = file.GetMap("mount");
-  model.mount_spheres_ = ReadSphereIndices(mount, model.num_spheres());
   model.mount_links_ = mount.GetStrings("links");
   model.lines_["mount.links"] = mount.Line("links");
+  if (whole.is_variant()) {  // the spheres are other ones, the bodies of the MJCF the same
+    mount.Has("spheres");
+    const YamlReader spheres = whole.of_spheres().GetMap("mount");
+    model.mount_spheres_ = ReadSphereIndices(spheres, model.num_spheres());
+    spheres.CheckNoUnknownKeys();
+  } else {
+    model.mount_spheres_ = ReadSphereIndices(mount, model.num_spheres());
+  }
   mount.CheckNoUnknownKeys();
 
-  if (file.Has("self_collision")) {
-    model.self_collision_ = ReadSelfCollision(file, links, model.spheres_);
+  if (whole.of_self_collision().Has("self_collision")) {
+    model.self_collision_ = ReadSelfCollision(whole.of_self_collision(), links, model.spheres_);
   }
 
   const YamlReader control = file.GetMap("control");
@@ -394,7 +442,7 @@ RobotModel RobotModel::FromFile(const std::string& path, const Pose& X_WB) {
   model.damping_ = ReadGains(control, "damping_n_m_s_rad", n);
   control.CheckNoUnknownKeys();
 
-  file.CheckNoUnknownKeys();
+  whole.CheckNoUnknownKeys();
   return model;
 }
 

@@ -1,6 +1,7 @@
 #include "sidestep/sim/simulation.h"
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/robot/model_name.h"
 #include "sidestep/sim/arm_file.h"
 #include "sidestep/sim/mujoco_model.h"
 #include "sidestep/sim/no_robot.h"
@@ -33,7 +34,7 @@ std::vector<std::string> NamesOf(const std::vector<scenarios::MovingObstacle>& o
 // whole world are of a text that nobody wrote.
 MujocoModelPtr Compile(const std::string& xml, const scenarios::Scenario& scenario,
                        const robot::RobotModel& robot, const std::string& models_dir) {
-  const std::string mjcf = models_dir + "/" + scenario.robot + "/" + scenario.robot + ".xml";
+  const std::string mjcf = robot::MjcfPath(models_dir, scenario.robot);
   MujocoModelPtr model;
   try {
     model = LoadMujocoModel(xml, scenario.file + ": its world");

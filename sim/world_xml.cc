@@ -12,6 +12,7 @@
 
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/number_text.h"
+#include "sidestep/robot/model_name.h"
 #include "sidestep/sim/arm_file.h"
 #include "sidestep/sim/foreign_model.h"
 #include "sidestep/sim/mujoco_model.h"
@@ -91,7 +92,7 @@ void MergeRobot(const scenarios::Scenario& scenario, const std::string& path, XM
   XMLDocument document;
   const XMLElement& robot = ParseModel(ReadModelFile(path), path, &document);
   CheckArmFile(robot, path);
-  const std::string main_class = scenario.robot + ".xml";
+  const std::string main_class = robot::ModelFolder(scenario.robot) + ".xml";
   const auto section = [&](const char* name) {
     XMLElement* found = world->FirstChildElement(name);
     return found != nullptr ? found : Append(world, name);
@@ -379,7 +380,7 @@ std::string BuildWorldXml(const scenarios::Scenario& scenario,
   AddFloorAndLights(scenario, worldbody);
   AddCameras(scenario, worldbody);
   if (!scenario.robot.empty()) {
-    MergeRobot(scenario, models_dir + "/" + scenario.robot + "/" + scenario.robot + ".xml", world);
+    MergeRobot(scenario, robot::MjcfPath(models_dir, scenario.robot), world);
     RefuseNamesOfTheRobot(scenario, worldbody);
   }
   for (const scenarios::StaticBox& box : scenario.static_boxes) AddStaticBox(box, worldbody);

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace sidestep::import {
+
+/// A sphere in the frame of a link.
+struct CoverSphere {
+  Eigen::Vector3d center_m = Eigen::Vector3d::Zero();
+  double radius_m = 0;
+};
+
+}  // namespace sidestep::import
