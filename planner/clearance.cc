@@ -6,9 +6,7 @@
 #include <vector>
 
 #include "sidestep/planner/guarded_spheres.h"
-#include "sidestep/planner/objective/arm_group.h"
 #include "sidestep/planner/objective/obstacle_kernels.h"
-#include "sidestep/planner/self_clearance.h"
 #include "sidestep/sdf/aligned_vector.h"
 
 namespace sidestep::planner {
@@ -71,11 +69,12 @@ class Moments {
 // The least clearance at one moment, as it is told.
 class ExactClearance {
  public:
-  ExactClearance(const robot::RobotModel& robot, const sdf::DistanceField& field)
+  ExactClearance(const robot::RobotModel& robot, const std::vector<int>& spheres,
+                 const SelfClearance& links, const sdf::DistanceField& field)
       : robot_(robot),
         field_(field),
-        spheres_(GuardedSpheres(robot)),
-        links_(robot),
+        spheres_(spheres),
+        links_(links),
         p_WS_(3, static_cast<Eigen::Index>(spheres_.size())) {}
 
   double At(const Eigen::VectorXd& q, EpisodeTime t) {
@@ -92,8 +91,8 @@ class ExactClearance {
  private:
   const robot::RobotModel& robot_;
   const sdf::DistanceField& field_;
-  std::vector<int> spheres_;
-  SelfClearance links_;
+  const std::vector<int>& spheres_;
+  const SelfClearance& links_;
   Eigen::Matrix3Xd p_WS_;
   sdf::DistanceSamples samples_;
 };
@@ -109,15 +108,21 @@ bool IsSafer(const Clearance& a, const Clearance& b) {
   return a.least_m > b.least_m;
 }
 
-Clearance MeasureClearance(const robot::RobotModel& robot, const sdf::DistanceField& field,
-                           const Trajectory& trajectory, EpisodeTime start, EpisodeTime from,
-                           EpisodeTime to, double step_s) {
+ClearanceMeter::ClearanceMeter(const robot::RobotModel& robot)
+    : robot_(robot),
+      arm_(MakeArm(robot, /*epsilon_m=*/0, /*sigma=*/1, /*self_epsilon_m=*/0)),
+      spheres_(GuardedSpheres(robot)),
+      links_(robot) {}
+
+Clearance ClearanceMeter::Measure(const sdf::DistanceField& field, const Trajectory& trajectory,
+                                  EpisodeTime start, EpisodeTime from, EpisodeTime to,
+                                  double step_s) const {
   Moments moments(trajectory, start, from, to, step_s);
   const int n = trajectory.num_joints();
 
   // All moments, several at a time, to rounding.
   Clearance clearance;
-  ArmGroup group(robot, /*epsilon_m=*/0, /*sigma=*/1, /*self_epsilon_m=*/0);
+  ArmGroup group(arm_);
   sdf::AlignedVector<double> nearly_m(static_cast<std::size_t>(moments.count() + ArmGroup::kSize));
   Eigen::MatrixXd q(n, ArmGroup::kSize);
   double least_m = std::numeric_limits<double>::infinity();
@@ -136,7 +141,7 @@ Clearance MeasureClearance(const robot::RobotModel& robot, const sdf::DistanceFi
   }
 
   // Those that can be the least or the first contact, exactly.
-  ExactClearance exact(robot, field);
+  ExactClearance exact(robot_, spheres_, links_, field);
   Eigen::VectorXd q_i(n);
   for (int i = 0; i < moments.count(); ++i) {
     const double nearly = nearly_m[static_cast<std::size_t>(i)];
@@ -148,6 +153,12 @@ Clearance MeasureClearance(const robot::RobotModel& robot, const sdf::DistanceFi
       clearance.first_contact = moments.Time(i);
   }
   return clearance;
+}
+
+Clearance MeasureClearance(const robot::RobotModel& robot, const sdf::DistanceField& field,
+                           const Trajectory& trajectory, EpisodeTime start, EpisodeTime from,
+                           EpisodeTime to, double step_s) {
+  return ClearanceMeter(robot).Measure(field, trajectory, start, from, to, step_s);
 }
 
 }  // namespace sidestep::planner

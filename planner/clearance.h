@@ -1,10 +1,14 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "sidestep/core/time.h"
 #include "sidestep/core/trajectory.h"
+#include "sidestep/planner/objective/arm_group.h"
+#include "sidestep/planner/self_clearance.h"
 #include "sidestep/robot/robot_model.h"
 #include "sidestep/sdf/distance_field.h"
 
@@ -27,8 +31,27 @@ struct Clearance {
 /// found, else the one that keeps more distance.
 bool IsSafer(const Clearance& a, const Clearance& b);
 
-/// Samples the motion along `trajectory`, which began at `start`, every `step_s` from `from` to
-/// `to`, and at `to`. Before its first and after its last state it rests.
+/// Measures motions of one robot, of whom what does not depend on the motion is worked out once.
+/// Immutable; safe from many threads.
+class ClearanceMeter {
+ public:
+  /// `robot` is borrowed.
+  explicit ClearanceMeter(const robot::RobotModel& robot);
+
+  /// Samples the motion along `trajectory`, which began at `start`, every `step_s` from `from` to
+  /// `to`, and at `to`. Before its first and after its last state it rests.
+  Clearance Measure(const sdf::DistanceField& field, const Trajectory& trajectory,
+                    EpisodeTime start, EpisodeTime from, EpisodeTime to,
+                    double step_s = 0.02) const;
+
+ private:
+  const robot::RobotModel& robot_;
+  std::shared_ptr<const obstacle_kernels::Arm> arm_;
+  std::vector<int> spheres_;  // that count
+  SelfClearance links_;
+};
+
+/// The same for who has few motions.
 Clearance MeasureClearance(const robot::RobotModel& robot, const sdf::DistanceField& field,
                            const Trajectory& trajectory, EpisodeTime start, EpisodeTime from,
                            EpisodeTime to, double step_s = 0.02);

@@ -19,17 +19,17 @@ constexpr int kMostSteps = 20;  // with each pull
 constexpr double kLongestStep_rad = 0.1;
 constexpr double kStill_rad = 1e-4;
 
-double LeastClearance(const robot::RobotModel& robot, const sdf::DistanceField& field,
+double LeastClearance(const ClearanceMeter& meter, const sdf::DistanceField& field,
                       const Eigen::VectorXd& q, EpisodeTime t) {
   const Trajectory there = {Eigen::VectorXd::Zero(1), q, Eigen::VectorXd::Zero(q.size())};
-  return MeasureClearance(robot, field, there, t, t, t).least_m;
+  return meter.Measure(field, there, t, t, t).least_m;
 }
 
 }  // namespace
 
 bool IsBlocked(const robot::RobotModel& robot, const sdf::DistanceField& field,
                const Eigen::VectorXd& q, EpisodeTime t) {
-  return LeastClearance(robot, field, q, t) <= 0;
+  return LeastClearance(ClearanceMeter(robot), field, q, t) <= 0;
 }
 
 std::optional<Eigen::VectorXd> FindFreeGoal(const robot::RobotModel& robot,
@@ -38,6 +38,7 @@ std::optional<Eigen::VectorXd> FindFreeGoal(const robot::RobotModel& robot,
                                             const Eigen::VectorXd& q_goal, EpisodeTime t) {
   const Eigen::Index n = q_goal.size();
   ObstacleHinge hinge(robot, field, settings.epsilon_m, kHingeSigma_m, kSelfEpsilon_m);
+  const ClearanceMeter meter(robot);
   Eigen::VectorXd q = q_goal;
   for (const double pull_rad : kPulls_rad) {
     const double information = 1 / (pull_rad * pull_rad);
@@ -58,7 +59,7 @@ std::optional<Eigen::VectorXd> FindFreeGoal(const robot::RobotModel& robot,
       }
       if (step.cwiseAbs().maxCoeff() < kStill_rad) break;
     }
-    const double clearance_m = LeastClearance(robot, field, q, t);
+    const double clearance_m = LeastClearance(meter, field, q, t);
     if (clearance_m > 0 && clearance_m >= kMarginShare * settings.epsilon_m) return q;
   }
   return std::nullopt;

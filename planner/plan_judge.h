@@ -26,9 +26,9 @@ struct Verdict {
 /// and the one it answers with, each looked at once. Not for several threads.
 class PlanJudge {
  public:
-  /// Borrows all three.
-  PlanJudge(const robot::RobotModel& robot, const PlannerSettings& settings,
-            const PlanRequest& request);
+  /// Borrows all.
+  PlanJudge(const robot::RobotModel& robot, const ClearanceMeter& clearance_meter,
+            const PlannerSettings& settings, const PlanRequest& request);
 
   /// @param trajectory on the request's grid, finite.
   Verdict Judge(const Trajectory& trajectory);
@@ -39,6 +39,7 @@ class PlanJudge {
     Verdict verdict;
   };
   const robot::RobotModel& robot_;
+  const ClearanceMeter& clearance_meter_;
   const PlannerSettings& settings_;
   const PlanRequest& request_;
   std::vector<Judged> judged_;

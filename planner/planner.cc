@@ -43,7 +43,7 @@ std::string ToString(PlanStatus status) {
 }
 
 Planner::Planner(const robot::RobotModel& robot, const PlannerSettings& settings)
-    : robot_(robot), settings_(settings) {
+    : robot_(robot), settings_(settings), clearance_meter_(robot_) {
   CheckPlannerSettings(settings);
 }
 
@@ -65,7 +65,7 @@ double Planner::DirectTime_s(const Eigen::VectorXd& q_start, const Eigen::Vector
 
 PlanResult Planner::Plan(const PlanRequest& request) const {
   CheckPlanRequest(request, robot_.num_joints());
-  PlanJudge judge(robot_, settings_, request);
+  PlanJudge judge(robot_, clearance_meter_, settings_, request);
   PlanResult result;
   PlanAnswer answer;
   try {

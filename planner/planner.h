@@ -75,6 +75,8 @@ struct PlannerCapabilities {
 /// planner that throws, or breaks one of these promises, has failed.
 class Planner {
  public:
+  Planner(const Planner&) = delete;
+  Planner& operator=(const Planner&) = delete;
   virtual ~Planner() = default;
   /// @throws std::invalid_argument for a request that means nothing (CheckPlanRequest).
   PlanResult Plan(const PlanRequest& request) const;
@@ -86,6 +88,8 @@ class Planner {
 
   virtual PlannerCapabilities capabilities() const { return {}; }
   const robot::RobotModel& robot() const { return robot_; }
+  /// By which results are judged.
+  const ClearanceMeter& clearance_meter() const { return clearance_meter_; }
 
  protected:
   /// @param settings by whose limits results are judged, whether the planner heeds them or not.
@@ -100,6 +104,7 @@ class Planner {
   virtual PlanAnswer DoPlan(const PlanRequest& request, PlanJudge& judge) const = 0;
   robot::RobotModel robot_;
   PlannerSettings settings_;
+  ClearanceMeter clearance_meter_;  // of robot_
 };
 
 }  // namespace sidestep::planner

@@ -122,7 +122,7 @@ CycleResult CycleWork::Run() const {
   const double begin_s = ThreadCpuSeconds();
   const TimedPlan present = running_ ? *running_ : Brake();
   const auto measure = [&](const TimedPlan& plan, EpisodeTime to) {
-    return MeasureClearance(planner_.robot(), field_, plan.trajectory, plan.start, t_effect_, to);
+    return planner_.clearance_meter().Measure(field_, plan.trajectory, plan.start, t_effect_, to);
   };
 
   CycleRecord& record = cycle.record;
@@ -254,9 +254,9 @@ std::optional<PlanRequest> CycleWork::MakeRequest() const {
   const bool at_rest = t_effect_ >= EndOf(*running_);
   const EpisodeTime judged_to =
       at_rest ? t_effect_ + HorizonOffset(options_.horizon_s) : EndOf(*running_);
-  const bool is_free =
-      !MeasureClearance(planner_.robot(), field_, running, running_->start, t_effect_, judged_to)
-           .first_contact;
+  const bool is_free = !planner_.clearance_meter()
+                            .Measure(field_, running, running_->start, t_effect_, judged_to)
+                            .first_contact;
   if (is_free && EndsAtGoal(running, options_.q_goal, scale_)) return std::nullopt;
   // Where it waits for a goal that is blocked, it rests.
   const EpisodeTime horizon_end = t_effect_ + HorizonOffset(options_.horizon_s);

@@ -8,47 +8,55 @@
 #include <memory>
 #include <vector>
 
+#include "sidestep/planner/compressed/chain_rows.h"
 #include "sidestep/planner/objective/chain_quadratic.h"
 #include "sidestep/planner/objective/trajectory_objective.h"
-#include "sidestep/sdf/aligned_vector.h"
 
 namespace sidestep::planner {
 
 /// The objective as a least-squares problem for Ceres with as few and as small residual blocks as
 /// can be, however many costs lie in an interval.
 ///
-/// Of each step (a state and the interval before it) the costs' rows (J, r) give way to the
-/// Cholesky factor R of (J, r)^T (J, r), which is 4n + 1 rows: a solver that sees them finds the
-/// same cost, gradient and Gauss-Newton Hessian. The first 2n of them depend on both states, the
-/// others on the second alone: two residual blocks.
+/// Its parameters are the free states. The rows (J, r) of all costs give way to the Cholesky factor
+/// of their Gauss-Newton Hessian, 2n rows a state, each in that state and the next (ChainRows): a
+/// solver that sees them finds the same cost, gradient and Hessian. What is left of the cost is one
+/// row more, which no state changes.
 ///
-/// The whole objective is evaluated once for each point that Ceres looks at, by its callback.
+/// The whole objective is evaluated once for each point that is looked at, whoever asks.
 class CompressedProblem final : private ceres::EvaluationCallback {
  public:
-  /// `objective` is borrowed, and has been restarted from `states`; its limits may come later.
+  /// `objective` is borrowed, and has been restarted from `states` (2n x K).
   CompressedProblem(TrajectoryObjective& objective, const Eigen::MatrixXd& states);
   CompressedProblem(const CompressedProblem&) = delete;
   CompressedProblem& operator=(const CompressedProblem&) = delete;
   ~CompressedProblem() override = default;
 
-  ceres::Problem& problem() { return *problem_; }
+  /// To be called when the objective's limits have changed.
+  void ForgetWhatWasSeen() { is_seen_ = false; }
+
+  /// At the present states.
+  const PlanCost& Cost();
+  /// Whether no step promises to lower the cost by more than this share of it.
+  bool IsBest(double tolerance);
+
+  /// Made when it is first asked for: a solve that has nothing to do needs none.
+  ceres::Problem& problem();
   const Eigen::MatrixXd& states() const { return states_; }  ///< 2n x K
 
  private:
   class Rows;
-  /// The rows of one step, row by row: column j of R^T is row j of (J, r).
-  struct Step {
-    double cost = 0;
-    sdf::AlignedVector<double> rows;
-  };
 
   void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
+  void Look();
+  /// @return false where the Hessian is not positive definite.
+  bool HasRows();
 
   TrajectoryObjective& objective_;
   Eigen::MatrixXd states_;
-  int height_;                // numbers from one row to the next
-  ChainQuadratic quadratic_;  // of one step
-  std::vector<Step> steps_;   // of the free states
+  bool is_seen_ = false, is_factored_ = false, has_rows_ = false;  // of seen_at_
+  Eigen::MatrixXd seen_at_;                                        // what the quadratic is about
+  ChainQuadratic quadratic_;
+  ChainRows rows_;
   std::vector<std::unique_ptr<ceres::CostFunction>> costs_;
   std::unique_ptr<ceres::Problem> problem_;  // last: it must go first
 };

@@ -1,9 +1,9 @@
 #include "sidestep/planner/fast/gp_fast_planner.h"
 
 #include <optional>
+#include <utility>
 
 #include "sidestep/planner/fast/levenberg_marquardt.h"
-#include "sidestep/planner/gp_objective.h"
 #include "sidestep/planner/objective/trajectory_objective.h"
 
 namespace sidestep::planner {
@@ -12,12 +12,17 @@ namespace {
 class FastOptimizer final : public TrajectoryOptimizer {
  public:
   FastOptimizer(const robot::RobotModel& robot, const PlanRequest& request,
-                const PlannerSettings& settings, const GpSettings& gp)
-      : robot_(robot), request_(request), settings_(settings), gp_(gp) {}
+                const PlannerSettings& settings, const GpProblemOptions& options,
+                std::shared_ptr<const obstacle_kernels::Arm> arm)
+      : robot_(robot),
+        request_(request),
+        settings_(settings),
+        options_(options),
+        arm_(std::move(arm)) {}
 
   void Restart(const Trajectory& guess) override {
     if (!objective_ || objective_->t_s() != guess.t_s) {
-      objective_.emplace(robot_, request_, guess.t_s, ObjectiveOf(settings_, gp_));
+      objective_.emplace(arm_, request_, guess.t_s, options_);
       solver_.emplace(*objective_);
     }
     objective_->Restart(guess);
@@ -41,7 +46,8 @@ class FastOptimizer final : public TrajectoryOptimizer {
   const robot::RobotModel& robot_;
   const PlanRequest& request_;
   const PlannerSettings& settings_;
-  const GpSettings& gp_;
+  const GpProblemOptions& options_;
+  std::shared_ptr<const obstacle_kernels::Arm> arm_;
   std::optional<TrajectoryObjective> objective_;  // for the grid of the guesses
   std::optional<LevenbergMarquardt> solver_;      // of that objective
   Eigen::MatrixXd states_;                        // 2n x K
@@ -49,9 +55,15 @@ class FastOptimizer final : public TrajectoryOptimizer {
 
 }  // namespace
 
+GpFastPlanner::GpFastPlanner(const robot::RobotModel& robot, const PlannerSettings& settings,
+                             const GpSettings& gp)
+    : SeededPlanner(robot, settings, gp),
+      options_(ObjectiveOf(settings, gp)),
+      arm_(TrajectoryObjective::MakeArm(robot, options_)) {}
+
 std::unique_ptr<TrajectoryOptimizer> GpFastPlanner::MakeOptimizer(
     const PlanRequest& request) const {
-  return std::make_unique<FastOptimizer>(robot(), request, settings(), gp());
+  return std::make_unique<FastOptimizer>(robot(), request, settings(), options_, arm_);
 }
 
 PlannerKind GpmpFastKind() {

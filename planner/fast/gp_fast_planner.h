@@ -2,7 +2,9 @@
 
 #include <memory>
 
+#include "sidestep/planner/gp_objective.h"
 #include "sidestep/planner/gp_settings.h"
+#include "sidestep/planner/objective/arm_group.h"
 #include "sidestep/planner/planner_kind.h"
 #include "sidestep/planner/planner_settings.h"
 #include "sidestep/planner/seeded_planner.h"
@@ -15,11 +17,13 @@ class GpFastPlanner final : public SeededPlanner {
  public:
   /// @throws std::invalid_argument for settings out of range.
   GpFastPlanner(const robot::RobotModel& robot, const PlannerSettings& settings,
-                const GpSettings& gp = {})
-      : SeededPlanner(robot, settings, gp) {}
+                const GpSettings& gp = {});
 
  private:
   std::unique_ptr<TrajectoryOptimizer> MakeOptimizer(const PlanRequest& request) const override;
+
+  GpProblemOptions options_;
+  std::shared_ptr<const obstacle_kernels::Arm> arm_;  // as these see the robot
 };
 
 PlannerKind GpmpFastKind();

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <numeric>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "sidestep/planner/guarded_spheres.h"
@@ -80,10 +81,13 @@ Arm::LinkHinge MakeLinkHinge(const robot::RobotModel& robot, const robot::LinkPa
   return hinge;
 }
 
-Arm MakeArm(const robot::RobotModel& robot, double epsilon_m, double sigma,
-            std::optional<double> self_epsilon_m) {
+}  // namespace
+
+std::shared_ptr<const Arm> MakeArm(const robot::RobotModel& robot, double epsilon_m, double sigma,
+                                   std::optional<double> self_epsilon_m) {
   const robot::Kinematics& kinematics = robot.kinematics();
-  Arm arm;
+  auto made = std::make_shared<Arm>();
+  Arm& arm = *made;
   arm.num_joints = robot.num_joints();
   const Eigen::Matrix3d R_WB = robot.X_WB().rotation().toRotationMatrix();
   Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(arm.R_WB.data()) = R_WB;
@@ -115,24 +119,20 @@ Arm MakeArm(const robot::RobotModel& robot, double epsilon_m, double sigma,
                           epsilon_m + sphere.radius_m});
   }
   arm.inverse_sigma = 1 / sigma;
-  if (!self_epsilon_m) return arm;
+  if (!self_epsilon_m) return made;
   arm.self_epsilon_m = *self_epsilon_m;
   for (const robot::LinkPair& links : robot.self_collision()) {
     arm.link_hinges.push_back(MakeLinkHinge(robot, links, place));
   }
-  return arm;
+  return made;
 }
 
-}  // namespace
-
-ArmGroup::ArmGroup(const robot::RobotModel& robot, double epsilon_m, double sigma,
-                   std::optional<double> self_epsilon_m)
-    : arm_(MakeArm(robot, epsilon_m, sigma, self_epsilon_m)) {
-  const auto n = static_cast<std::size_t>(arm_.num_joints);
+ArmGroup::ArmGroup(std::shared_ptr<const Arm> arm) : arm_(std::move(arm)) {
+  const auto n = static_cast<std::size_t>(arm_->num_joints);
   q_8_.assign(kGroup * n, 0.0);
-  axes_8_.assign(kGroup * arm_.rows.size() * obstacle_kernels::kNumbersPerAxis, 0.0);
-  centers_8_.assign(kGroup * 3 * arm_.spheres.size(), 0.0);
-  samples_8_.assign(kGroup * 4 * arm_.hinges.size(), 0.0);
+  axes_8_.assign(kGroup * arm_->rows.size() * obstacle_kernels::kNumbersPerAxis, 0.0);
+  centers_8_.assign(kGroup * 3 * arm_->spheres.size(), 0.0);
+  samples_8_.assign(kGroup * 4 * arm_->hinges.size(), 0.0);
 }
 
 void ArmGroup::Place(const Eigen::Ref<const Eigen::MatrixXd>& q) {
@@ -143,17 +143,17 @@ void ArmGroup::Place(const Eigen::Ref<const Eigen::MatrixXd>& q) {
       q_8_[static_cast<std::size_t>(kSize * j + c)] = q_c(j);
     }
   }
-  obstacle_kernels::ComputeCenters(arm_, q_8_.data(), axes_8_.data(), centers_8_.data());
+  obstacle_kernels::ComputeCenters(*arm_, q_8_.data(), axes_8_.data(), centers_8_.data());
 }
 
 int ArmGroup::Sample(int c, const sdf::FieldSlice& slice) {
   int num_outside = 0;
   sdf::PointBlock block;
-  for (std::size_t begin = 0; begin < arm_.hinges.size(); begin += sdf::PointBlock::kSize) {
-    block.count = std::min(sdf::PointBlock::kSize, arm_.hinges.size() - begin);
+  for (std::size_t begin = 0; begin < arm_->hinges.size(); begin += sdf::PointBlock::kSize) {
+    block.count = std::min(sdf::PointBlock::kSize, arm_->hinges.size() - begin);
     for (std::size_t n = 0; n < block.count; ++n) {
       const double* const center =
-          &centers_8_[3 * kGroup * static_cast<std::size_t>(arm_.hinges[begin + n].sphere)] + c;
+          &centers_8_[3 * kGroup * static_cast<std::size_t>(arm_->hinges[begin + n].sphere)] + c;
       block.x[n] = center[0];
       block.y[n] = center[kGroup];
       block.z[n] = center[2 * kGroup];

@@ -115,9 +115,9 @@ bool FactorPanel(const Sizes& chain, const double* damping, double* C, double* i
 }
 
 template <class Sizes>
-bool SolveOfSizes(const Sizes& chain, int num_blocks, const double* panels, const double* damping,
-                  double* factor, double* inverse, double* rhs) {
-  const int height = 2 * chain.stride, panel_size = chain.block_size * height;
+bool FactorOfSizes(const Sizes& chain, int num_blocks, const double* panels, const double* damping,
+                   double* factor, double* inverse, double* rhs) {
+  const int panel_size = chain.block_size * 2 * chain.stride;
   for (int k = 0; k < num_blocks; ++k) {
     double* const C = factor + k * panel_size;
     const int at = k * chain.stride;
@@ -125,6 +125,13 @@ bool SolveOfSizes(const Sizes& chain, int num_blocks, const double* panels, cons
               k > 0 ? inverse + at - chain.stride : nullptr, C);
     if (!FactorPanel(chain, damping + at, C, inverse + at, rhs + at)) return false;
   }
+  return true;
+}
+
+template <class Sizes>
+void SubstituteBack(const Sizes& chain, int num_blocks, const double* factor, const double* inverse,
+                    double* rhs) {
+  const int height = 2 * chain.stride, panel_size = chain.block_size * height;
   for (int k = num_blocks - 1; k >= 0; --k) {
     const double* const C = factor + k * panel_size;
     double* const x = rhs + k * chain.stride;
@@ -136,7 +143,22 @@ bool SolveOfSizes(const Sizes& chain, int num_blocks, const double* panels, cons
       for (int i = 0; i < j; ++i) x[i] -= C[i * height + j] * x[j];
     }
   }
+}
+
+template <class Sizes>
+bool SolveOfSizes(const Sizes& chain, int num_blocks, const double* panels, const double* damping,
+                  double* factor, double* inverse, double* rhs) {
+  if (!FactorOfSizes(chain, num_blocks, panels, damping, factor, inverse, rhs)) return false;
+  SubstituteBack(chain, num_blocks, factor, inverse, rhs);
   return true;
+}
+
+bool FactorChain(const Chain& chain, const double* panels, const double* damping, double* factor,
+                 double* inverse, double* rhs) {
+  if (chain.block_size == SevenJoints::block_size && chain.stride == SevenJoints::stride) {
+    return FactorOfSizes(SevenJoints(), chain.num_blocks, panels, damping, factor, inverse, rhs);
+  }
+  return FactorOfSizes(chain, chain.num_blocks, panels, damping, factor, inverse, rhs);
 }
 
 bool SolveChain(const Chain& chain, const double* panels, const double* damping, double* factor,
@@ -145,27 +167,6 @@ bool SolveChain(const Chain& chain, const double* panels, const double* damping,
     return SolveOfSizes(SevenJoints(), chain.num_blocks, panels, damping, factor, inverse, rhs);
   }
   return SolveOfSizes(chain, chain.num_blocks, panels, damping, factor, inverse, rhs);
-}
-
-void FactorSemidefiniteColumns(int size, int height, double* columns) {
-  const D d;
-  constexpr double kDependent = 1e-11;
-  for (int j = 0; j < size; ++j) {
-    double* const column = columns + j * height;
-    // What has been taken off the diagonal is the square of what stands above.
-    double taken = 0;
-    for (int i = 0; i < j; ++i) taken += columns[i * height + j] * columns[i * height + j];
-    const double pivot = column[j];
-    for (int row = 0; row < j; ++row) column[row] = 0;
-    const bool is_dependent = !(pivot > kDependent * (pivot + taken));
-    const V scale = hn::Set(d, is_dependent ? 0 : 1 / std::sqrt(pivot));
-    for (int row = FirstRowOfVector(j); row < height; row += kLanes) {
-      hn::Store(hn::Mul(hn::Load(d, column + row), scale), d, column + row);
-    }
-    for (int k = j + 1; !is_dependent && k < size; ++k) {
-      Subtract(column, column[k], FirstRowOfVector(k), height, columns + k * height);
-    }
-  }
 }
 
 // Pairs (a, b) of (q, v, q, v) with a >= b, row by row.
@@ -245,21 +246,22 @@ HWY_AFTER_NAMESPACE();
 namespace sidestep::planner::chain_kernels {
 
 HWY_EXPORT(SolveChain);
+HWY_EXPORT(FactorChain);
 HWY_EXPORT(AddBetweenStates);
-HWY_EXPORT(FactorSemidefiniteColumns);
 
 bool Solve(const Chain& chain, const double* panels, const double* damping, double* factor,
            double* inverse, double* rhs) {
   return HWY_DYNAMIC_DISPATCH(SolveChain)(chain, panels, damping, factor, inverse, rhs);
 }
 
+bool Factor(const Chain& chain, const double* panels, const double* damping, double* factor,
+            double* inverse, double* rhs) {
+  return HWY_DYNAMIC_DISPATCH(FactorChain)(chain, panels, damping, factor, inverse, rhs);
+}
+
 void AddBetween(int num_joints, int stride, std::span<const BetweenStates> between,
                 const IntervalTarget& target) {
   HWY_DYNAMIC_DISPATCH(AddBetweenStates)(num_joints, stride, between, target);
-}
-
-void FactorSemidefinite(int size, int height, double* columns) {
-  HWY_DYNAMIC_DISPATCH(FactorSemidefiniteColumns)(size, height, columns);
 }
 
 }  // namespace sidestep::planner::chain_kernels

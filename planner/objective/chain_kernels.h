@@ -19,6 +19,11 @@ struct Chain {
 bool Solve(const Chain& chain, const double* panels, const double* damping, double* factor,
            double* inverse, double* rhs);
 
+/// The first half of that: H + damping = C diag(inverse) C^T, where C is lower triangular and kept
+/// as the panels are, with the pivots on its diagonal. `rhs` is left as y, C diag(inverse) y = rhs.
+bool Factor(const Chain& chain, const double* panels, const double* damping, double* factor,
+            double* inverse, double* rhs);
+
 /// A quadratic in one configuration of an interval, whose position is the sum of `weights` times
 /// (q, v, q, v) of the two states around it, or that of the second: what ObstacleQuadratics holds.
 struct BetweenStates {
@@ -41,11 +46,5 @@ struct IntervalTarget {
 /// v), the product of their weights times the configuration's Hessian (a Kronecker product).
 void AddBetween(int num_joints, int stride, std::span<const BetweenStates> between,
                 const IntervalTarget& target);
-
-/// The Cholesky factor R^T of a symmetric positive semidefinite matrix, in place: `size` columns,
-/// each at a multiple of `height` numbers, a multiple of 8 that has room for one; of the matrix the
-/// lower triangle counts. A column whose pivot is no more than rounding (1e-11 of what stood on the
-/// diagonal) depends on those before it, and becomes zero. Above the diagonal zeros are left.
-void FactorSemidefinite(int size, int height, double* columns);
 
 }  // namespace sidestep::planner::chain_kernels

@@ -1,6 +1,7 @@
 #include "sidestep/planner/objective/obstacle_objective.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "sidestep/planner/costs/obstacle_hinge.h"
 
@@ -17,9 +18,8 @@ ObstacleQuadratic ObstacleQuadratics::Get(int c) const {
           Eigen::Map<const Eigen::MatrixXd>(hessian(c), rows_, n_).topRows(n_)};
 }
 
-ObstacleObjective::ObstacleObjective(const robot::RobotModel& robot, double epsilon_m, double sigma,
-                                     std::optional<double> self_epsilon_m)
-    : group_(robot, epsilon_m, sigma, self_epsilon_m) {
+ObstacleObjective::ObstacleObjective(std::shared_ptr<const obstacle_kernels::Arm> arm)
+    : group_(std::move(arm)) {
   terms_8_.assign(ArmGroup::kSize * static_cast<std::size_t>(group_.arm().num_terms()), 0.0);
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -58,9 +59,7 @@ class ObstacleQuadratics {
 /// set.
 class ObstacleObjective {
  public:
-  /// Arguments as of ObstacleHinge, but for the field.
-  ObstacleObjective(const robot::RobotModel& robot, double epsilon_m, double sigma,
-                    std::optional<double> self_epsilon_m = std::nullopt);
+  explicit ObstacleObjective(std::shared_ptr<const obstacle_kernels::Arm> arm);
 
   /// @param q n x C, column c a configuration; @param slices C, what each of them sees.
   /// @param quadratics of C; where a cost is 0, the rest stays as it was.

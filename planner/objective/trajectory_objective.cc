@@ -1,16 +1,22 @@
 #include "sidestep/planner/objective/trajectory_objective.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "sidestep/planner/gp_trajectory.h"
 
 namespace sidestep::planner {
 
-TrajectoryObjective::TrajectoryObjective(const robot::RobotModel& robot, const PlanRequest& request,
-                                         const Eigen::VectorXd& t_s,
+std::shared_ptr<const obstacle_kernels::Arm> TrajectoryObjective::MakeArm(
+    const robot::RobotModel& robot, const GpProblemOptions& options) {
+  return planner::MakeArm(robot, options.epsilon_m, options.sigma_obs, options.self_epsilon_m);
+}
+
+TrajectoryObjective::TrajectoryObjective(std::shared_ptr<const obstacle_kernels::Arm> arm,
+                                         const PlanRequest& request, const Eigen::VectorXd& t_s,
                                          const GpProblemOptions& options)
     : options_(options),
-      n_(robot.num_joints()),
+      n_(arm->num_joints),
       t_s_(t_s),
       step_s_(request.step_s),
       num_fixed_(request.num_fixed),
@@ -18,7 +24,7 @@ TrajectoryObjective::TrajectoryObjective(const robot::RobotModel& robot, const P
       x_start_(2 * n_),
       x_goal_(Eigen::VectorXd::Zero(2 * n_)),
       gp_(request.step_s, options.qc),
-      obstacles_(robot, options.epsilon_m, options.sigma_obs, options.self_epsilon_m),
+      obstacles_(std::move(arm)),
       at_places_(n_, (num_states() - first_free_) * (options.num_interpolated + 1)) {
   x_start_ << request.q_start, request.v_start;
   x_goal_.head(n_) = request.q_goal;

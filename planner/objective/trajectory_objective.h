@@ -31,7 +31,13 @@ class TrajectoryObjective {
   /// @param t_s of the support states since the request's start: the grid of all guesses.
   /// `robot` and the request's field are borrowed.
   TrajectoryObjective(const robot::RobotModel& robot, const PlanRequest& request,
+                      const Eigen::VectorXd& t_s, const GpProblemOptions& options)
+      : TrajectoryObjective(MakeArm(robot, options), request, t_s, options) {}
+  /// The same with the robot as these options see it, for who makes many.
+  TrajectoryObjective(std::shared_ptr<const obstacle_kernels::Arm> arm, const PlanRequest& request,
                       const Eigen::VectorXd& t_s, const GpProblemOptions& options);
+  static std::shared_ptr<const obstacle_kernels::Arm> MakeArm(const robot::RobotModel& robot,
+                                                              const GpProblemOptions& options);
 
   /// Takes what is fixed from `initial`, and leaves limits out.
   void Restart(const Trajectory& initial);

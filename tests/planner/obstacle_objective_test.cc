@@ -56,7 +56,8 @@ class ObstacleObjectiveOf : public ::testing::TestWithParam<Case> {
   }
   static constexpr double kSigma = 0.05;
   static ObstacleObjective Objective(const robot::RobotModel& robot) {
-    return ObstacleObjective(robot, GetParam().epsilon_m, kSigma, GetParam().self_epsilon_m);
+    return ObstacleObjective(
+        MakeArm(robot, GetParam().epsilon_m, kSigma, GetParam().self_epsilon_m));
   }
 
   // All over the joints' range, and three turns beyond; of slides within their range.
