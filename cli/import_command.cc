@@ -49,9 +49,10 @@ int Import(Options options) {
 void AddImportCommand(CommandLine& line) {
   auto options = std::make_shared<Options>();
   RobotImport& import = options->import;
-  CLI::App* const command =
-      line.app.add_subcommand("import", "Make a robot of a URDF: its robot.yaml and its MJCF");
-  command->add_option("ROBOT", import.file, "ROBOT.urdf, with xacro run")->required();
+  CLI::App* const command = line.app.add_subcommand(
+      "import", "Make a robot of a URDF or an MJCF: its robot.yaml and its MJCF");
+  command->add_option("ROBOT", import.file, "ROBOT.urdf, with xacro run, or MODEL.xml of MuJoCo")
+      ->required();
   command
       ->add_option("--out", import.out,
                    "The robot's folder, whose name becomes its own: models/NAME")

@@ -8,16 +8,20 @@
 #include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
+#include "sidestep/import/arm_of_tree.h"
 #include "sidestep/import/arm_pose.h"
 #include "sidestep/import/bounding_capsule.h"
 #include "sidestep/import/home_candidates.h"
+#include "sidestep/import/hull_finish.h"
 #include "sidestep/import/link_spheres.h"
 #include "sidestep/import/robot_files.h"
 #include "sidestep/import/sphere_roles.h"
+#include "sidestep/import/urdf_tree.h"
 #include "sidestep/robot/robot_model.h"
 #include "sidestep/sim/arm_file.h"
 #include "sidestep/sim/arm_survey.h"
 #include "sidestep/sim/robot_agreement.h"
+#include "sidestep/sim/tree_reader.h"
 
 namespace sidestep::cli {
 namespace {
@@ -34,6 +38,13 @@ std::string NameOf(const std::string& out) {
     throw InputError("--out", "must be a folder whose name is the robot's, is '" + out + "'");
   }
   return name;
+}
+
+robot::RobotTree ReadTree(const std::string& file, const import::ArmChoices& choices) {
+  if (fs::path(file).extension() != ".xml") return import::ReadUrdfTree(file, choices);
+  robot::RobotTree tree = sim::ReadMjcfTree(file, choices.visuals_as_collisions);
+  import::FinishHulls(choices, &tree);
+  return tree;
 }
 
 std::string Spelled(const robot::ArmDescription& arm, const import::LinkPairs& pairs) {
@@ -62,7 +73,8 @@ void SetArmature(const Eigen::VectorXd& armature, robot::ArmDescription* arm) {
   int coordinate = 0;
   for (std::size_t i = 0; i < arm->joints.size(); ++i) {
     if (arm->joints[i].coordinate != coordinate) continue;
-    arm->dynamics[i].armature = armature(coordinate++);
+    if (arm->dynamics[i].armature == 0) arm->dynamics[i].armature = armature(coordinate);
+    ++coordinate;
   }
 }
 
@@ -71,7 +83,7 @@ void SetArmature(const Eigen::VectorXd& armature, robot::ArmDescription* arm) {
 void ImportRobot(const RobotImport& request) {
   import::ArmChoices choices = request.choices;
   choices.name = NameOf(request.out);
-  import::ImportedArm imported = import::ArmFromUrdf(request.file, choices);
+  import::ImportedArm imported = import::ArmOfTree(ReadTree(request.file, choices), choices);
   robot::ArmDescription& arm = imported.arm;
   for (const std::string& note : imported.notes) Print("{}\n", note);
 

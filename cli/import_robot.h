@@ -2,13 +2,13 @@
 
 #include <string>
 
-#include "sidestep/import/arm_from_urdf.h"
+#include "sidestep/import/arm_choices.h"
 
 namespace sidestep::cli {
 
 /// What `sidestep import` is asked for.
 struct RobotImport {
-  std::string file;  ///< URDF
+  std::string file;  ///< URDF, or MJCF if its name ends in .xml
   std::string out;   ///< the robot's folder
   import::ArmChoices choices;
   double cover_mm = 20;

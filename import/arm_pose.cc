@@ -52,7 +52,7 @@ std::vector<Eigen::VectorXd> SampleConfigurations(const robot::ArmDescription& a
 Eigen::Vector3d RollPitchYawOf(const Eigen::Matrix3d& R) {
   // Where the pitch is nearly a right angle, yaw is what rounding makes it, and roll makes up for
   // it.
-  const double yaw = std::hypot(R(0, 0), R(1, 0)) < 1e-9 ? 0 : std::atan2(R(1, 0), R(0, 0));
+  const double yaw = std::hypot(R(0, 0), R(1, 0)) < 1e-15 ? 0 : std::atan2(R(1, 0), R(0, 0));
   const Eigen::Matrix3d S =
       Eigen::AngleAxisd(-yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix() * R;
   return {std::atan2(-S(1, 2), S(1, 1)), std::atan2(-S(2, 0), S(0, 0)), yaw};

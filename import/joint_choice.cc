@@ -12,15 +12,15 @@ namespace {
 
 class Choice {
  public:
-  Choice(const UrdfFile& file, const ArmChoices& choices) : file_(file), choices_(choices) {
-    for (const std::string& name : file.joint_order) {
-      children_[JointOf(name).parent_link_name].push_back(name);
+  Choice(const robot::RobotTree& tree, const ArmChoices& choices) : tree_(tree), choices_(choices) {
+    for (const robot::TreeJoint& joint : tree.joints) {
+      children_[joint.parent].push_back(joint.name);
     }
   }
 
   JointChoice Run() {
     CheckFixed();
-    chosen_.base = choices_.base.empty() ? file_.model->getRoot()->name : choices_.base;
+    chosen_.base = choices_.base.empty() ? tree_.root : choices_.base;
     RequireLink("--base", chosen_.base);
     ChooseTip();
     GiveRoles();
@@ -30,39 +30,33 @@ class Choice {
   }
 
  private:
-  const urdf::Joint& JointOf(const std::string& name) const {
-    return *file_.model->joints_.at(name);
-  }
+  const robot::TreeJoint& JointOf(const std::string& name) const { return *tree_.FindJoint(name); }
 
   void RequireLink(const std::string& flag, const std::string& link) const {
-    if (file_.model->links_.count(link) > 0) return;
+    if (tree_.FindLink(link) != nullptr) return;
     std::vector<std::string> known;
-    for (const auto& [name, one] : file_.model->links_) known.push_back(name);
+    for (const robot::TreeLink& one : tree_.links) known.push_back(one.link.name);
     throw InputError(flag, "there is no link '" + link + "' (there are: " + Joined(known) + ")");
   }
 
   void CheckFixed() const {
     for (const auto& [name, position] : choices_.fix) {
-      const auto found = file_.model->joints_.find(name);
-      if (found == file_.model->joints_.end()) {
-        throw InputError("--fix", "there is no joint '" + name + "'");
-      }
-      const urdf::Joint& joint = *found->second;
-      if (joint.type == urdf::Joint::FIXED) {
+      const robot::TreeJoint* const joint = tree_.FindJoint(name);
+      if (joint == nullptr) throw InputError("--fix", "there is no joint '" + name + "'");
+      if (joint->kind == robot::JointKind::kFixed) {
         throw InputError("--fix", "the joint '" + name + "' is fixed anyway");
       }
-      const bool limited = joint.type != urdf::Joint::CONTINUOUS && joint.limits != nullptr;
-      if (limited && (position < joint.limits->lower || position > joint.limits->upper)) {
-        throw InputError(
-            "--fix", "'" + name + "' must be from " + ShortestText(joint.limits->lower) + " to " +
-                         ShortestText(joint.limits->upper) + ", is " + ShortestText(position));
+      if (position < joint->q_min || position > joint->q_max) {
+        throw InputError("--fix", "'" + name + "' must be from " + ShortestText(joint->q_min) +
+                                      " to " + ShortestText(joint->q_max) + ", is " +
+                                      ShortestText(position));
       }
     }
   }
 
   // Whether a joint can have a number of its own in a configuration.
-  bool CanMove(const urdf::Joint& joint) const {
-    return joint.type != urdf::Joint::FIXED && joint.mimic == nullptr &&
+  bool CanMove(const robot::TreeJoint& joint) const {
+    return joint.kind != robot::JointKind::kFixed && !joint.mimic &&
            choices_.fix.count(joint.name) == 0;
   }
 
@@ -71,10 +65,10 @@ class Choice {
     std::vector<std::string> path;
     std::string at = link;
     while (at != chosen_.base) {
-      const urdf::JointSharedPtr joint = file_.model->links_.at(at)->parent_joint;
+      const robot::TreeJoint* const joint = tree_.JointUnder(at);
       if (joint == nullptr) return {};
       path.push_back(joint->name);
-      at = joint->parent_link_name;
+      at = joint->parent;
     }
     std::reverse(path.begin(), path.end());
     return path;
@@ -93,7 +87,7 @@ class Choice {
       return;
     }
     for (const std::string& joint : below->second) {
-      CollectLeaves(JointOf(joint).child_link_name, leaves);
+      CollectLeaves(JointOf(joint).child, leaves);
     }
   }
 
@@ -121,7 +115,7 @@ class Choice {
       chosen_.tip = best.front();
     }
     if (CountMoving(chosen_.tip) == 0 && !MovesByMimic()) {
-      throw InputError(file_.path,
+      throw InputError(tree_.file,
                        "no joint from '" + chosen_.base + "' to '" + chosen_.tip + "' can move");
     }
     for (const std::string& leaf : leaves) {
@@ -132,22 +126,22 @@ class Choice {
   bool MovesByMimic() const {
     const std::vector<std::string> path = PathTo(chosen_.tip);
     return std::any_of(path.begin(), path.end(), [this](const std::string& name) {
-      return JointOf(name).mimic != nullptr && CanMove(*LeaderOf(JointOf(name)).joint);
+      return JointOf(name).mimic && CanMove(*LeaderOf(JointOf(name)).joint);
     });
   }
 
   struct Leader {
-    const urdf::Joint* joint;
+    const robot::TreeJoint* joint;
     double multiplier, offset;
   };
   // Through joints that mimic joints that mimic.
-  Leader LeaderOf(const urdf::Joint& joint) const {
+  Leader LeaderOf(const robot::TreeJoint& joint) const {
     Leader leader{&joint, 1, 0};
-    while (leader.joint->mimic != nullptr && choices_.fix.count(leader.joint->name) == 0) {
-      const urdf::JointMimic& mimic = *leader.joint->mimic;
+    while (leader.joint->mimic && choices_.fix.count(leader.joint->name) == 0) {
+      const robot::TreeMimic& mimic = *leader.joint->mimic;
       leader.offset += leader.multiplier * mimic.offset;
       leader.multiplier *= mimic.multiplier;
-      leader.joint = &JointOf(mimic.joint_name);
+      leader.joint = &JointOf(mimic.joint);
     }
     return leader;
   }
@@ -155,15 +149,15 @@ class Choice {
   void GiveRoles() {
     std::set<std::string> moving;
     for (const std::string& name : PathTo(chosen_.tip)) {
-      const urdf::Joint& joint = JointOf(name);
-      if (joint.type == urdf::Joint::FIXED) continue;
-      const urdf::Joint& leader = *LeaderOf(joint).joint;
+      const robot::TreeJoint& joint = JointOf(name);
+      if (joint.kind == robot::JointKind::kFixed) continue;
+      const robot::TreeJoint& leader = *LeaderOf(joint).joint;
       if (CanMove(leader)) moving.insert(leader.name);
     }
-    for (const std::string& name : file_.joint_order) {
-      const urdf::Joint& joint = JointOf(name);
+    for (const robot::TreeJoint& joint : tree_.joints) {
+      const std::string& name = joint.name;
       JointRole role;
-      if (joint.type == urdf::Joint::FIXED) {
+      if (joint.kind == robot::JointKind::kFixed) {
         // holds its link where its origin says
       } else if (moving.count(name) > 0) {
         role.kind = JointRole::Kind::kMoves;
@@ -186,7 +180,7 @@ class Choice {
   bool HoldsALeader(const std::string& name) const {
     const auto is_led_by = [&name](const auto& one) { return one.second.leader == name; };
     if (std::any_of(chosen_.roles.begin(), chosen_.roles.end(), is_led_by)) return true;
-    const auto below = children_.find(JointOf(name).child_link_name);
+    const auto below = children_.find(JointOf(name).child);
     return below != children_.end() &&
            std::any_of(below->second.begin(), below->second.end(),
                        [this](const std::string& child) { return HoldsALeader(child); });
@@ -201,7 +195,7 @@ class Choice {
                           [this](const std::string& name) { return HoldsALeader(name); });
     for (const std::string& name : joints) {
       chosen_.joints.push_back(name);
-      Order(JointOf(name).child_link_name);
+      Order(JointOf(name).child);
     }
   }
 
@@ -210,13 +204,13 @@ class Choice {
       const JointRole& role = chosen_.roles.at(*joint);
       if (role.kind != JointRole::Kind::kMimics) continue;
       if (std::find(chosen_.joints.begin(), joint, role.leader) != joint) continue;
-      throw InputError(file_.path, file_.LineOf("joint " + *joint), "joint '" + *joint + "': mimic",
+      throw InputError(tree_.file, JointOf(*joint).line, "joint '" + *joint + "': mimic",
                        "'" + role.leader + "', which it mimics, must not be behind it or outside " +
                            "of what is below '" + chosen_.base + "'; hold both by --fix");
     }
   }
 
-  const UrdfFile& file_;
+  const robot::RobotTree& tree_;
   const ArmChoices& choices_;
   std::map<std::string, std::vector<std::string>> children_;  // joints by their parent link
   JointChoice chosen_;
@@ -224,8 +218,8 @@ class Choice {
 
 }  // namespace
 
-JointChoice ChooseJoints(const UrdfFile& file, const ArmChoices& choices) {
-  return Choice(file, choices).Run();
+JointChoice ChooseJoints(const robot::RobotTree& tree, const ArmChoices& choices) {
+  return Choice(tree, choices).Run();
 }
 
 }  // namespace sidestep::import

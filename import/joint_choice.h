@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "sidestep/import/arm_from_urdf.h"
-#include "sidestep/import/urdf_file.h"
+#include "sidestep/import/arm_choices.h"
+#include "sidestep/robot/robot_tree.h"
 
 namespace sidestep::import {
 
-/// How one joint of a URDF moves in the arm that is made of it.
+/// How one joint of a tree moves in the arm that is made of it.
 struct JointRole {
   enum class Kind { kMoves, kMimics, kHeld };
   Kind kind = Kind::kHeld;
@@ -18,7 +18,7 @@ struct JointRole {
   double multiplier = 1, offset = 0;
 };
 
-/// Which part of a URDF becomes the arm, and what moves in it.
+/// Which part of a tree becomes the arm, and what moves in it.
 struct JointChoice {
   std::string base, tip;
   std::vector<std::string> joints;  ///< below the base, parents and leaders before the others
@@ -27,6 +27,6 @@ struct JointChoice {
 };
 
 /// @throws InputError.
-JointChoice ChooseJoints(const UrdfFile& file, const ArmChoices& choices);
+JointChoice ChooseJoints(const robot::RobotTree& tree, const ArmChoices& choices);
 
 }  // namespace sidestep::import

@@ -268,8 +268,10 @@ LinkPairs PairsWithoutContact(const robot::ArmDescription& arm, const LinkPairs&
       return other.first == pair.first && other.second == pair.second;
     });
   };
-  for (const robot::LinkPair& pair : always) {
-    if (!is_there(pair)) pairs.push_back(pair);
+  for (const LinkPairs& others : {arm.without_contact, always}) {
+    for (const robot::LinkPair& pair : others) {
+      if (!is_there(pair)) pairs.push_back(pair);
+    }
   }
   return pairs;
 }

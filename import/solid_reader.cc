@@ -8,6 +8,7 @@
 
 #include "sidestep/core/input_error.h"
 #include "sidestep/import/convex_hull.h"
+#include "sidestep/import/hull_finish.h"
 #include "sidestep/import/mesh_file.h"
 #include "sidestep/import/mesh_uri.h"
 #include "sidestep/import/urdf_pose.h"
@@ -93,17 +94,11 @@ class Reader {
     if (more > 0.1 && loaded.notes.empty()) {
       note(fmt::format("is not convex: its hull holds {:.0f} % more than it does", 100 * more));
     }
-    SimplerHull simpler = Simplify(*whole, choices_.max_hull_vertices);
-    if (simpler.outside_m > 0) {
-      note(fmt::format("has a hull of {} corners, of which {} are taken: {:.2g} mm stick out",
-                       whole->vertices.cols(), simpler.hull.vertices.cols(),
-                       1000 * simpler.outside_m));
-    }
-    // To the micrometre, as it is written.
-    simpler.hull.vertices = (simpler.hull.vertices * 1e6).array().round().matrix() * 1e-6;
-    const std::optional<robot::HullSolid> rounded = ConvexHullOf(simpler.hull.vertices);
-    if (!rounded) Fail(name + " spans no solid: it is flat, to 0.1 mm");
-    solid->form = *rounded;
+    std::string hull_note;
+    const auto hull = FinishedHull(points, choices_.max_hull_vertices, &hull_note);
+    if (!hull) Fail(name + " spans no solid: it is flat, to 0.1 mm");
+    if (!hull_note.empty()) note(hull_note);
+    solid->form = *hull;
   }
 
   const UrdfFile& file_;
@@ -127,13 +122,7 @@ std::vector<robot::LinkSolid> ReadSolids(const UrdfFile& file, const urdf::Link&
     const urdf::Collision& one = *link.collision_array[i];
     solids.push_back(reader.Read(*one.geometry, one.origin, line("collision", i)));
   }
-  if (!solids.empty() || link.visual_array.empty()) return solids;
-  if (!choices.visuals_as_collisions) {
-    notes->push_back("link '" + link.name +
-                     "': is drawn, but has no collision: nothing of it can touch "
-                     "(--visuals-as-collisions takes what is drawn)");
-    return solids;
-  }
+  if (!solids.empty() || !choices.visuals_as_collisions) return solids;
   for (std::size_t i = 0; i < link.visual_array.size(); ++i) {
     const urdf::Visual& one = *link.visual_array[i];
     solids.push_back(reader.Read(*one.geometry, one.origin, line("visual", i)));

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "sidestep/import/arm_from_urdf.h"
+#include "sidestep/import/arm_choices.h"
 #include "sidestep/import/urdf_file.h"
 #include "sidestep/robot/arm_description.h"
 

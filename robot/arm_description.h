@@ -9,6 +9,7 @@
 #include "sidestep/core/pose.h"
 #include "sidestep/core/shape.h"
 #include "sidestep/robot/joint.h"
+#include "sidestep/robot/robot_model.h"
 
 namespace sidestep::robot {
 
@@ -54,6 +55,9 @@ struct ArmDescription {
   std::vector<JointDynamics> dynamics;  ///< of each joint
   std::vector<ArmLink> links;           ///< of the base, then of each joint
   std::string tool_link;
+  /// Of links (by their joints; -1: the base; first < second) that do not touch each other,
+  /// whatever they do.
+  std::vector<LinkPair> without_contact;
 
   /// Of a joint's link; -1: the base's.
   const ArmLink& LinkOf(int joint) const { return links[static_cast<std::size_t>(joint + 1)]; }

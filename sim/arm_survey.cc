@@ -112,10 +112,14 @@ double Rounded(double value) {
   return power < 0 ? std::round(value / scale) * scale : std::round(value * scale) / scale;
 }
 
-void FindGains(std::vector<MatrixXd> inertias, const SurveySettings& settings, ArmSurvey* survey) {
+void FindGains(const robot::ArmDescription& arm, std::vector<MatrixXd> inertias,
+               const SurveySettings& settings, ArmSurvey* survey) {
   VectorXd alone = VectorXd::Zero(inertias.front().rows());
   for (const MatrixXd& M : inertias) alone = alone.cwiseMax(M.diagonal());
   survey->armature = (settings.armature_share * alone).unaryExpr(&Rounded);
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+    if (arm.dynamics[i].armature > 0) survey->armature(arm.joints[i].coordinate) = 0;
+  }
   for (MatrixXd& M : inertias) M.diagonal() += survey->armature;
   alone += survey->armature;
   double bandwidth = settings.bandwidth_rad_s, ratio = 1;
@@ -166,7 +170,7 @@ ArmSurvey SurveyArm(const mjModel& model, const robot::ArmDescription& arm,
     found.home = q;
     break;
   }
-  FindGains(std::move(inertias), settings, &found);
+  FindGains(arm, std::move(inertias), settings, &found);
   return found;
 }
 

@@ -18,7 +18,8 @@ struct ArmSurvey {
   std::vector<robot::LinkPair> always, sometimes;
   std::optional<Eigen::VectorXd> home;  ///< the first of the candidates without self-contact
   /// Of each coordinate, the share that was asked for of the greatest inertia that it moves alone:
-  /// what the rotor of its motor may count behind a gear, of which a URDF says nothing.
+  /// what the rotor of its motor may count behind a gear, of which a URDF says nothing; 0 for one
+  /// that has an armature.
   Eigen::VectorXd armature;
   /// Gains of the joint impedance [N m/rad, N m s/rad]: critically damped at the bandwidth by the
   /// greatest inertia that each joint moves alone; the damping more where the others would make it
@@ -34,7 +35,7 @@ struct SurveySettings {
   double armature_share = 0.1;
 };
 
-/// @param model the MJCF of `arm`, compiled alone, without armature.
+/// @param model the MJCF of `arm`, compiled alone.
 ArmSurvey SurveyArm(const mjModel& model, const robot::ArmDescription& arm,
                     const SurveySettings& settings);
 

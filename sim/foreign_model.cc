@@ -2,7 +2,6 @@
 
 #include <tinyxml2.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -14,6 +13,7 @@
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/text_file.h"
 #include "sidestep/sim/mesh_files.h"
+#include "sidestep/sim/mesh_vertices.h"
 
 namespace sidestep::sim {
 namespace {
@@ -46,10 +46,7 @@ constexpr Bound kBounds[] = {
 // meshes.
 const std::set<std::string_view> kRefused = {"composite", "hfield", "skin", "flexcomp", "plugin"};
 
-// What MuJoCo takes from a mesh without a word: one so small that it counts as nothing, or so flat
-// that its hull is none.
 constexpr int kMostVertices = 20000;  // of all meshes
-constexpr double kFarthest_m = 100, kFlat_m = 1e-5;
 
 // The sections that BuildWorldXml writes or takes over from the robot.
 const std::set<std::string_view> kSections = {
@@ -153,14 +150,10 @@ class Walk {
       Fail(mesh, "vertex",
            "with it meshes would have more than " + std::to_string(kMostVertices) + " vertices");
     }
-    if (vertices.cwiseAbs().maxCoeff() > kFarthest_m) {
-      Fail(mesh, "vertex", "must be within 100 m");
-    }
-    const Eigen::Matrix3Xd about = vertices.colwise() - vertices.rowwise().mean();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(about * about.transpose());
-    const Eigen::Matrix3Xd along = axes.eigenvectors().transpose() * about;
-    if ((along.rowwise().maxCoeff() - along.rowwise().minCoeff()).minCoeff() < kFlat_m) {
-      Fail(mesh, "vertex", "must span a solid, is flatter than 0.01 mm");
+    try {
+      CheckMeshVertices(vertices);
+    } catch (const InputError& error) {
+      throw InputError(file_ + ":" + std::to_string(mesh.GetLineNum()), error.what());
     }
   }
 

@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <functional>
+#include <sstream>
 #include <string_view>
 
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/number_text.h"
 #include "sidestep/sim/geom_solids.h"
+#include "sidestep/sim/mesh_corners.h"
+#include "sidestep/sim/mesh_vertices.h"
+#include "sidestep/sim/mjcf_tags.h"
 #include "sidestep/sim/mujoco_model.h"
 
 namespace sidestep::sim {
@@ -22,42 +25,9 @@ using tinyxml2::XMLElement;
 
 constexpr std::size_t kMostCorners = 1000;  // of one mesh
 
-// A tag of the text, from its < to behind its >.
-struct Tag {
-  std::size_t begin, end;
-};
-
-// The next tag of a name at or after `from`, comments left out.
-bool FindTag(std::string_view xml, std::string_view name, std::size_t from, Tag* tag) {
-  for (std::size_t at = xml.find('<', from); at != std::string_view::npos;
-       at = xml.find('<', at + 1)) {
-    if (xml.substr(at, 4) == "<!--") {
-      at = xml.find("-->", at);
-      if (at == std::string_view::npos) return false;
-      continue;
-    }
-    const std::size_t behind = at + 1 + name.size();
-    if (xml.substr(at + 1, name.size()) != name || behind >= xml.size()) continue;
-    if (std::string_view(" \t\n/>").find(xml[behind]) == std::string_view::npos) continue;
-    char quote = 0;
-    for (std::size_t end = behind; end < xml.size(); ++end) {
-      const char c = xml[end];
-      if (quote != 0) {
-        if (c == quote) quote = 0;
-      } else if (c == '"' || c == '\'') {
-        quote = c;
-      } else if (c == '>') {
-        *tag = {at, end + 1};
-        return true;
-      }
-    }
-    return false;
-  }
-  return false;
-}
-
 // The element that a tag begins, by itself. @return nullptr if it is none.
-const XMLElement* ParseTag(std::string_view xml, const Tag& tag, tinyxml2::XMLDocument* document) {
+const XMLElement* ParseTag(std::string_view xml, const XmlTag& tag,
+                           tinyxml2::XMLDocument* document) {
   std::string text(xml.substr(tag.begin, tag.end - tag.begin));
   if (text[text.size() - 2] != '/') text.insert(text.size() - 1, "/");
   return document->Parse(text.data(), text.size()) == tinyxml2::XML_SUCCESS
@@ -69,7 +39,7 @@ class Inliner {
  public:
   Inliner(const std::string& xml, const std::string& path)
       : xml_(xml), path_(path), folder_(fs::path(path).parent_path()) {
-    Tag tag{};
+    XmlTag tag;
     for (std::size_t from = 0; FindTag(xml_, "compiler", from, &tag); from = tag.end) {
       tinyxml2::XMLDocument document;
       const XMLElement* const compiler = ParseTag(xml_, tag, &document);
@@ -81,7 +51,7 @@ class Inliner {
   std::string Run() {
     std::string text;
     std::size_t done = 0;
-    Tag tag{};
+    XmlTag tag;
     while (FindTag(xml_, "mesh", done, &tag)) {
       text += xml_.substr(done, tag.begin - done);
       done = tag.end;
@@ -95,14 +65,14 @@ class Inliner {
   }
 
  private:
-  [[noreturn]] void Fail(const Tag& tag, const std::string& key, const std::string& why) const {
+  [[noreturn]] void Fail(const XmlTag& tag, const std::string& key, const std::string& why) const {
     const auto begin = xml_.begin();
     const auto line = 1 + std::count(begin, begin + static_cast<std::ptrdiff_t>(tag.begin), '\n');
     throw InputError(path_, static_cast<int>(line), key, why);
   }
 
   // In the model's folder or below it: a model is whole by itself.
-  fs::path CheckedPath(const Tag& tag, const std::string& key, const fs::path& file) const {
+  fs::path CheckedPath(const XmlTag& tag, const std::string& key, const fs::path& file) const {
     const fs::path plain = file.lexically_normal();
     if (plain.is_absolute() || (!plain.empty() && *plain.begin() == "..")) {
       Fail(tag, key, "'" + file.string() + "' must lie in the model's folder");
@@ -110,14 +80,11 @@ class Inliner {
     return folder_ / plain;
   }
 
-  std::string Inlined(const Tag& tag, const XMLElement& mesh, const std::string& whole) const {
+  std::string Inlined(const XmlTag& tag, const XMLElement& mesh, const std::string& whole) const {
     const std::string file = mesh.Attribute("file");
     const fs::path path = CheckedPath(tag, "mesh", file);
     std::error_code error;
     if (!fs::is_regular_file(path, error)) Fail(tag, "mesh", "there is no " + path.string());
-    if (mesh.Attribute("class") != nullptr) {
-      Fail(tag, "mesh", "has a class; write at the mesh what it says");
-    }
     const char* const given = mesh.Attribute("name");
     const std::string name = given != nullptr ? given : path.stem().string();
     std::string vertices;
@@ -141,23 +108,12 @@ class Inliner {
 
   // Of the hull, as MuJoCo has it, to the micrometre.
   static std::string CornersOf(const XMLElement& mesh, const std::string& path) {
-    tinyxml2::XMLDocument document;
-    XMLElement* const root = document.NewElement("mujoco");
-    document.InsertEndChild(root);
-    XMLElement* const copy = root->InsertNewChildElement("asset")->InsertNewChildElement("mesh");
-    for (const tinyxml2::XMLAttribute* attribute = mesh.FirstAttribute(); attribute != nullptr;
-         attribute = attribute->Next()) {
-      copy->SetAttribute(attribute->Name(), attribute->Value());
-    }
-    copy->SetAttribute("name", "mesh");
-    copy->SetAttribute("file", path.c_str());
-    XMLElement* const geom =
-        root->InsertNewChildElement("worldbody")->InsertNewChildElement("geom");
-    geom->SetAttribute("type", "mesh");
-    geom->SetAttribute("mesh", "mesh");
-    tinyxml2::XMLPrinter printer;
-    document.Print(&printer);
-    const MujocoModelPtr model = LoadMujocoModel(printer.CStr(), "MuJoCo");
+    const Eigen::Matrix3Xd corners = ScaleOf(mesh).asDiagonal() * ReadMeshCorners(path);
+    CheckMeshVertices(corners);
+    const MujocoModelPtr model = LoadMujocoModel(
+        "<mujoco><asset><mesh name=\"mesh\" vertex=\"" + ToText(corners) +
+            "\"/></asset><worldbody><geom type=\"mesh\" mesh=\"mesh\"/></worldbody></mujoco>",
+        "MuJoCo");
     // MuJoCo turns a mesh into its principal axes, and the geom against that.
     const mjtNum* const q = model->geom_quat;
     const Eigen::Quaterniond R(q[0], q[1], q[2], q[3]);
@@ -167,12 +123,31 @@ class Inliner {
       throw InputError("its hull has " + std::to_string(hull.vertices.size()) + " corners",
                        "must be at most " + std::to_string(kMostCorners));
     }
+    Eigen::Matrix3Xd placed(3, static_cast<Eigen::Index>(hull.vertices.size()));
+    for (std::size_t i = 0; i < hull.vertices.size(); ++i) {
+      placed.col(static_cast<Eigen::Index>(i)) = R * hull.vertices[i] + p;
+    }
+    return ToText((placed * 1e6).array().round().matrix() / 1e6);
+  }
+
+  static Eigen::Vector3d ScaleOf(const XMLElement& mesh) {
+    Eigen::Vector3d scale(1, 1, 1);
+    for (const tinyxml2::XMLAttribute* attribute = mesh.FirstAttribute(); attribute != nullptr;
+         attribute = attribute->Next()) {
+      const std::string_view key = attribute->Name();
+      if (key == "name" || key == "file") continue;
+      std::istringstream words(attribute->Value());
+      if (key != "scale") throw InputError(std::string(key), "is not taken");
+      words >> scale.x() >> scale.y() >> scale.z();
+      if (!words) throw InputError("scale", "must be three numbers");
+    }
+    return scale;
+  }
+
+  static std::string ToText(const Eigen::Matrix3Xd& points) {
     std::string text;
-    for (const Eigen::Vector3d& vertex : hull.vertices) {
-      const Eigen::Vector3d placed = R * vertex + p;
-      for (const double value : placed) {
-        text += (text.empty() ? "" : " ") + ShortestText(std::round(value * 1e6) / 1e6 + 0.0);
-      }
+    for (const double value : points.reshaped()) {
+      text += (text.empty() ? "" : " ") + ShortestText(value + 0.0);
     }
     return text;
   }

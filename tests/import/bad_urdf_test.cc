@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "sidestep/core/input_error.h"
-#include "sidestep/import/arm_from_urdf.h"
+#include "sidestep/import/arm_of_tree.h"
+#include "sidestep/import/urdf_tree.h"
 #include "tests/support/bytes_of.h"
 #include "tests/support/temporary_folder.h"
 
@@ -27,6 +28,10 @@ std::vector<std::string> BadFiles() {
   }
   std::sort(names.begin(), names.end());
   return names;
+}
+
+ImportedArm ArmFromUrdf(const std::string& path, const ArmChoices& choices) {
+  return ArmOfTree(ReadUrdfTree(path, choices), choices);
 }
 
 std::string MessageOf(const std::string& path, const ArmChoices& choices = {}) {
@@ -141,7 +146,7 @@ TEST(UrdfInertia, IsRepairedOnRequestAndThatIsSaid) {
     const char* note;
   } kCases[] = {{"inertia_not_positive", "link 'arm': its inertia must be positive definite"},
                 {"inertia_of_no_solid", "link 'arm': its inertia is none of a solid"},
-                {"zero_mass", "link 'arm': its mass is 0: taken as none given"},
+                {"zero_mass", "link 'arm' has no mass: given"},
                 {"moves_nothing_heavy", "link 'arm' has no mass: given"}};
   for (const auto& [file, note] : kCases) {
     const ImportedArm imported = ArmFromUrdf(kBad + file + ".urdf", choices);

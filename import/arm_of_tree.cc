@@ -1,4 +1,4 @@
-#include "sidestep/import/arm_from_urdf.h"
+#include "sidestep/import/arm_of_tree.h"
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -9,11 +9,7 @@
 #include "sidestep/core/joined.h"
 #include "sidestep/core/number_text.h"
 #include "sidestep/import/convex_hull.h"
-#include "sidestep/import/inertia.h"
 #include "sidestep/import/joint_choice.h"
-#include "sidestep/import/solid_reader.h"
-#include "sidestep/import/urdf_file.h"
-#include "sidestep/import/urdf_pose.h"
 
 namespace sidestep::import {
 namespace {
@@ -22,30 +18,32 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kDensity_kg_m3 = 1000;  // of what is given a weight that it lacks
 constexpr double kJerkRamp = 0.1;        // of the ramp of speed, in which acceleration comes
 
-bool IsFinite(const urdf::Joint& joint) { return joint.type != urdf::Joint::CONTINUOUS; }
-
 class Maker {
  public:
-  Maker(const UrdfFile& file, const ArmChoices& choices)
-      : file_(file), choices_(choices), choice_(ChooseJoints(file, choices)) {
-    imported_.notes = file.notes;
+  Maker(const robot::RobotTree& tree, const ArmChoices& choices)
+      : tree_(tree), choices_(choices), choice_(ChooseJoints(tree, choices)) {
+    imported_.notes = tree.notes;
   }
 
   ImportedArm Make() {
     arm_.name = choices_.name;
-    arm_.source = file_.path;
+    arm_.source = tree_.file;
     AddLink(choice_.base);
-    for (const std::string& name : choice_.joints) AddJoint(*file_.model->joints_.at(name));
+    for (const std::string& name : choice_.joints) AddJoint(*tree_.FindJoint(name));
     arm_.tool_link = NameOfLink(choice_.tip);
+    for (const auto& [first, second] : tree_.without_contact) {
+      const int a = NumberOf(NameOfLink(first)), b = NumberOf(NameOfLink(second));
+      if (a != b) arm_.without_contact.push_back({std::min(a, b), std::max(a, b)});
+    }
     if (arm_.limits.size() > 16) {
-      throw InputError(file_.path,
+      throw InputError(tree_.file,
                        std::to_string(arm_.limits.size()) +
                            " joints move, at most 16 may; choose a --tip or --fix some");
     }
     bool is_solid = false;
     for (const robot::ArmLink& link : arm_.links) is_solid = is_solid || !link.solids.empty();
     if (!is_solid) {
-      throw InputError(file_.path,
+      throw InputError(tree_.file,
                        "none of its links has a collision; --visuals-as-collisions "
                        "takes what is drawn");
     }
@@ -55,9 +53,8 @@ class Maker {
   }
 
  private:
-  [[noreturn]] void Fail(const std::string& what, const std::string& key,
-                         const std::string& why) const {
-    throw InputError(file_.path, file_.LineOf(what), key, why);
+  [[noreturn]] void Fail(int line, const std::string& key, const std::string& why) const {
+    throw InputError(tree_.file, line, key, why);
   }
   void Note(const std::string& text) { imported_.notes.push_back(text); }
 
@@ -72,44 +69,17 @@ class Maker {
   }
 
   void AddLink(const std::string& name) {
-    const urdf::Link& from = *file_.model->links_.at(name);
-    robot::ArmLink link;
+    const robot::TreeLink& from = *tree_.FindLink(name);
+    robot::ArmLink link = from.link;
     link.name = NameOfLink(name);
     for (const robot::ArmLink& other : arm_.links) {
-      if (other.name == link.name) Fail("link " + name, "link '" + name + "'", "is there twice");
+      if (other.name == link.name) Fail(from.line, "link '" + name + "'", "is there twice");
     }
-    if (from.inertial != nullptr) link.inertia = InertiaOf(from);
-    link.solids = ReadSolids(file_, from, choices_, &imported_.notes);
+    if (!link.inertia && !link.solids.empty()) weightless_.push_back(link.name);
     arm_.links.push_back(std::move(link));
   }
 
-  std::optional<robot::LinkInertia> InertiaOf(const urdf::Link& link) {
-    const urdf::Inertial& from = *link.inertial;
-    const std::string key = "link '" + link.name + "'", what = "inertial " + link.name;
-    if (!(from.mass > 0)) {
-      if (from.mass == 0 && choices_.repair_inertia) {
-        Note(key + ": its mass is 0: taken as none given");
-        return std::nullopt;
-      }
-      Fail(what, key + ": mass",
-           "must be > 0, is " + ShortestText(from.mass) +
-               (from.mass == 0 ? " (--repair-inertia takes that as none given)" : ""));
-    }
-    const Pose X_LI = PoseOf(from.origin);
-    Eigen::Matrix3d I;
-    I << from.ixx, from.ixy, from.ixz, from.ixy, from.iyy, from.iyz, from.ixz, from.iyz, from.izz;
-    if (const std::string why = WhyNoInertia(I); !why.empty()) {
-      if (!choices_.repair_inertia) {
-        Fail(what, key + ": inertia", why + " (--repair-inertia mends that)");
-      }
-      I = RepairedInertia(I);
-      Note(key + ": its inertia " + why + "; mended to " + ShortestText(I(0, 0)) + ", " +
-           ShortestText(I(1, 1)) + ", " + ShortestText(I(2, 2)) + " about its own axes");
-    }
-    const Eigen::Matrix3d R = X_LI.rotation().toRotationMatrix();
-    return robot::LinkInertia{from.mass, X_LI.translation(), R * I * R.transpose()};
-  }
-
+  // Of a link's joint; the base's for one that is no part of the arm.
   int NumberOf(const std::string& link) const {
     for (std::size_t i = 0; i < arm_.links.size(); ++i) {
       if (arm_.links[i].name == link) return static_cast<int>(i) - 1;
@@ -117,23 +87,16 @@ class Maker {
     return -1;
   }
 
-  void AddJoint(const urdf::Joint& from) {
+  void AddJoint(const robot::TreeJoint& from) {
     const JointRole& role = choice_.roles.at(from.name);
     robot::Joint joint;
     joint.name = from.name;
-    joint.link = NameOfLink(from.child_link_name);
-    joint.parent = NumberOf(NameOfLink(from.parent_link_name));
-    joint.X_PJ = PoseOf(from.parent_to_joint_origin_transform);
-    joint.axis_J = Eigen::Vector3d(from.axis.x, from.axis.y, from.axis.z);
-    if (from.type != urdf::Joint::FIXED) joint.axis_J.normalize();
-    joint.kind = from.type == urdf::Joint::FIXED       ? robot::JointKind::kFixed
-                 : from.type == urdf::Joint::PRISMATIC ? robot::JointKind::kPrismatic
-                                                       : robot::JointKind::kRevolute;
-    robot::JointDynamics dynamics;
-    if (from.dynamics != nullptr) {
-      dynamics.damping = from.dynamics->damping;
-      dynamics.friction = from.dynamics->friction;
-    }
+    joint.link = NameOfLink(from.child);
+    joint.parent = NumberOf(NameOfLink(from.parent));
+    joint.kind = from.kind;
+    joint.X_PJ = from.X_PJ;
+    joint.axis_J = from.axis_J;
+    robot::JointDynamics dynamics = from.dynamics;
     switch (role.kind) {
       case JointRole::Kind::kHeld:
         Hold(from, role.position, &joint);
@@ -149,15 +112,12 @@ class Maker {
         joint.multiplier = role.multiplier;
         joint.offset = role.offset;
     }
-    if (dynamics.damping < 0 || dynamics.friction < 0) {
-      Fail("joint " + from.name, "joint '" + from.name + "': dynamics", "must be >= 0");
-    }
     arm_.joints.push_back(joint);
     arm_.dynamics.push_back(dynamics);
-    AddLink(from.child_link_name);
+    AddLink(from.child);
   }
 
-  void Hold(const urdf::Joint& from, double position, robot::Joint* joint) {
+  void Hold(const robot::TreeJoint& from, double position, robot::Joint* joint) {
     if (joint->kind == robot::JointKind::kFixed) return;
     if (position != 0) {
       joint->X_PJ =
@@ -168,43 +128,32 @@ class Maker {
     }
     joint->kind = robot::JointKind::kFixed;
     held_.push_back(from.name + " at " + ShortestText(position));
-    const bool limited = IsFinite(from) && from.limits != nullptr;
-    if (limited && (position < from.limits->lower || position > from.limits->upper)) {
+    if (position < from.q_min || position > from.q_max) {
       Note("joint '" + from.name + "' is held at " + ShortestText(position) +
-           ", outside of its limits " + ShortestText(from.limits->lower) + " to " +
-           ShortestText(from.limits->upper) + "; --fix " + from.name + "=VALUE holds it elsewhere");
+           ", outside of its limits " + ShortestText(from.q_min) + " to " +
+           ShortestText(from.q_max) + "; --fix " + from.name + "=VALUE holds it elsewhere");
     }
   }
 
-  robot::JointLimits LimitsOf(const urdf::Joint& from) {
+  robot::JointLimits LimitsOf(const robot::TreeJoint& from) {
+    const std::string key = "joint '" + from.name + "': limit";
     robot::JointLimits limits;
-    limits.q_min = -kInfinity;
-    limits.q_max = limits.v_max = limits.a_max = limits.jerk_max = kInfinity;
-    limits.torque_max = limits.torque_rate_max = kInfinity;
-    const std::string what = "joint " + from.name, key = "joint '" + from.name + "': limit";
-    if (from.limits != nullptr) {
-      if (IsFinite(from)) {
-        limits.q_min = from.limits->lower;
-        limits.q_max = from.limits->upper;
-        if (!(limits.q_min < limits.q_max)) {
-          Fail(what, key,
-               "lower must be < upper, they are " + ShortestText(limits.q_min) + " and " +
-                   ShortestText(limits.q_max) + " (--fix " + from.name + "=0 holds it still)");
-        }
-      }
-      if (from.limits->velocity < 0) Fail(what, key, "velocity must not be negative");
-      if (from.limits->effort < 0) Fail(what, key, "effort must not be negative");
-      if (from.limits->velocity > 0) limits.v_max = from.limits->velocity;
-      if (from.limits->effort > 0) limits.torque_max = from.limits->effort;
-      if (from.limits->effort == 0) {
-        Note("joint '" + from.name + "': its effort is 0: taken as none given, it has no limit");
-      }
+    limits.q_min = from.q_min;
+    limits.q_max = from.q_max;
+    limits.v_max = from.v_max;
+    limits.torque_max = from.torque_max;
+    limits.a_max = limits.jerk_max = limits.torque_rate_max = kInfinity;
+    if (!(limits.q_min < limits.q_max)) {
+      Fail(from.line, key,
+           "lower must be < upper, they are " + ShortestText(limits.q_min) + " and " +
+               ShortestText(limits.q_max) + " (--fix " + from.name + "=0 holds it still)");
     }
+    if (!std::isfinite(limits.torque_max)) unlimited_.push_back(from.name);
     if (!std::isfinite(limits.v_max)) {
       if (!choices_.v_max) {
-        Fail(what, key,
-             "velocity is not given or 0, and nothing moves without a greatest speed; "
-             "give one by --velocity");
+        Fail(from.line, key,
+             "velocity is not given or 0, and nothing moves without a greatest speed; give one by "
+             "--velocity");
       }
       limits.v_max = *choices_.v_max;
     }
@@ -225,7 +174,7 @@ class Maker {
       if (weighs) continue;
       const std::string& name = arm_.joints[i].name;
       if (!choices_.repair_inertia || !GiveWeight(links)) {
-        Fail("joint " + name, "joint '" + name + "'",
+        Fail(tree_.FindJoint(name)->line, "joint '" + name + "'",
              "moves the link '" + arm_.joints[i].link +
                  "', which has no mass, nor has what is fixed to it (--repair-inertia gives it "
                  "that of water of its shape)");
@@ -287,30 +236,37 @@ class Maker {
       chain += "; further ends: " + Joined(choice_.other_leaves);
     }
     imported_.notes.insert(imported_.notes.begin(), chain);
+    if (!tree_.only_drawn.empty()) {
+      Note("drawn, but able to touch nothing (--visuals-as-collisions takes what is drawn): " +
+           Joined(tree_.only_drawn));
+    }
+    if (!weightless_.empty()) {
+      Note("weigh nothing, but for what is fixed to them: " + Joined(weightless_));
+    }
+    if (!unlimited_.empty()) Note("have no limit of torque: " + Joined(unlimited_));
     if (!held_.empty()) Note("held: " + Joined(held_));
     if (!choices_.ramp_s) {
       Note(
-          "a URDF knows no limits of acceleration and jerk: none are written "
+          "no limits of acceleration and jerk are known, and none are written "
           "(--ramp-s derives some)");
     }
     imported_.arm = std::move(arm_);
   }
 
-  const UrdfFile& file_;
+  const robot::RobotTree& tree_;
   const ArmChoices& choices_;
   const JointChoice choice_;
   robot::ArmDescription arm_;
   ImportedArm imported_;
   std::map<std::string, int> coordinates_;  // of joints that move
   std::set<std::string> renamed_;
-  std::vector<std::string> held_;
+  std::vector<std::string> held_, weightless_, unlimited_;
 };
 
 }  // namespace
 
-ImportedArm ArmFromUrdf(const std::string& path, const ArmChoices& choices) {
-  const UrdfFile file = ReadUrdf(path);
-  return Maker(file, choices).Make();
+ImportedArm ArmOfTree(const robot::RobotTree& tree, const ArmChoices& choices) {
+  return Maker(tree, choices).Make();
 }
 
 }  // namespace sidestep::import
