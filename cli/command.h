@@ -15,6 +15,7 @@ struct CommandLine {
 /// One file a sub-command; each registers itself and sets `exit_code` when it runs. Bad input is
 /// thrown as InputError, which main() prints as one line and turns into exit code 2.
 void AddRunCommand(CommandLine& line);
+void AddImportCommand(CommandLine& line);
 void AddListCommand(CommandLine& line);
 void AddCompareCommand(CommandLine& line);
 void AddAuditCommand(CommandLine& line);

@@ -62,6 +62,7 @@ int Run(int argc, char** argv) {
   sidestep::cli::AddStudyCommand(line);
   sidestep::cli::AddAuditCommand(line);
   sidestep::cli::AddBenchCommand(line);
+  sidestep::cli::AddImportCommand(line);
   sidestep::cli::AddListCommand(line);
   sidestep::cli::AddCheckRobotCommand(line);
   sidestep::cli::AddDoctorCommand(line);

@@ -67,7 +67,8 @@ set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "gnuplot-nox") # draws the figures of 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libsidestep-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "cmake, pkg-config, libavcodec-dev, libavformat-dev, libavutil-dev, libceres-dev, libeigen3-dev, \
-libfmt-dev, libhdf5-dev, libhwy-dev, libmujoco-dev, libosmesa6-dev, libqhull-dev, libswscale-dev, \
-libtbb-dev, libtinyxml2-dev, libyaml-cpp-dev, nlohmann-json3-dev${vision_packages}")
+    "cmake, pkg-config, libassimp-dev, libavcodec-dev, libavformat-dev, libavutil-dev, libceres-dev, \
+libconsole-bridge-dev, libeigen3-dev, libfmt-dev, libhdf5-dev, libhwy-dev, libmujoco-dev, \
+libosmesa6-dev, libqhull-dev, libswscale-dev, libtbb-dev, libtinyxml2-dev, liburdfdom-dev, \
+libyaml-cpp-dev, nlohmann-json3-dev${vision_packages}")
 include(CPack)

@@ -8,6 +8,7 @@
 #include "sidestep/core/trajectory.h"
 #include "sidestep/render/timeline.h"
 #include "sidestep/sim/foreign_model.h"
+#include "sidestep/sim/tied_joints.h"
 
 namespace sidestep::render {
 namespace {
@@ -100,6 +101,7 @@ void TraceModel::SetJoints(const Eigen::VectorXd& q) {
   for (std::size_t i = 0; i < joint_addresses_.size(); ++i) {
     data_->qpos[joint_addresses_[i]] = q(static_cast<Eigen::Index>(i));
   }
+  sim::FollowLeaders(*model_, data_.get());
 }
 
 Eigen::Vector3d TraceModel::TipPosition() const {

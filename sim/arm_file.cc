@@ -13,11 +13,21 @@ namespace {
 
 using tinyxml2::XMLElement;
 
-const std::set<std::string_view> kTakenOver = {"compiler", "default", "asset",    "worldbody",
-                                               "contact",  "tendon",  "actuator", "sensor"};
+const std::set<std::string_view> kTakenOver = {"compiler",  "default",  "asset",
+                                               "worldbody", "contact",  "equality",
+                                               "tendon",    "actuator", "sensor"};
 
 [[noreturn]] void Fail(const std::string& name, const XMLElement& element, const std::string& why) {
   throw InputError(name, element.GetLineNum(), element.Name(), why);
+}
+
+// Joints that mimic others; robot.yaml is held to them (sim/robot_agreement.h).
+void CheckTies(const XMLElement& equality, const std::string& name) {
+  for (const XMLElement* tie = equality.FirstChildElement(); tie != nullptr;
+       tie = tie->NextSiblingElement()) {
+    if (std::string_view(tie->Name()) == "joint") continue;
+    Fail(name, *tie, "ties bodies together, which planning takes for free; leave it out");
+  }
 }
 
 }  // namespace
@@ -26,11 +36,8 @@ void CheckArmFile(const XMLElement& root, const std::string& name) {
   for (const XMLElement* section = root.FirstChildElement(); section != nullptr;
        section = section->NextSiblingElement()) {
     const std::string_view tag = section->Name();
-    if (tag == "equality" && section->FirstChildElement() != nullptr) {
-      Fail(name, *section->FirstChildElement(),
-           "ties joints or bodies together, which planning takes for free; leave it out");
-    }
-    if (tag == "equality" || kTakenOver.count(tag) > 0) continue;
+    if (tag == "equality") CheckTies(*section, name);
+    if (kTakenOver.count(tag) > 0) continue;
     Fail(name, *section, "is not taken over from a robot, the world has its own; leave it out");
   }
   const XMLElement* first = nullptr;
@@ -52,10 +59,13 @@ void CheckArmFile(const XMLElement& root, const std::string& name) {
 }
 
 MujocoModelPtr LoadArmFile(const std::string& path) {
-  const std::string xml = ReadModelFile(path);
+  return LoadArmText(ReadModelFile(path), path);
+}
+
+MujocoModelPtr LoadArmText(const std::string& xml, const std::string& name) {
   tinyxml2::XMLDocument document;
-  CheckArmFile(ParseModel(xml, path, &document), path);
-  return LoadMujocoModel(xml, path);
+  CheckArmFile(ParseModel(xml, name, &document), name);
+  return LoadMujocoModel(xml, name);
 }
 
 }  // namespace sidestep::sim

@@ -8,9 +8,12 @@
 #include <set>
 #include <sstream>
 #include <string_view>
+#include <vector>
 
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/text_file.h"
+#include "sidestep/sim/mesh_files.h"
+#include "sidestep/sim/mesh_vertices.h"
 
 namespace sidestep::sim {
 namespace {
@@ -39,10 +42,11 @@ constexpr Bound kBounds[] = {
     {"user", "dim", 1000},   // a sensor's values
 };
 
-// Made to any size from a few words, or of no use here: robots are made of primitives.
-// (MuJoCo 2.2.2 also crashes on some meshes.)
-const std::set<std::string_view> kRefused = {"composite", "hfield",   "mesh",
-                                             "skin",      "flexcomp", "plugin"};
+// Made to any size from a few words, or of no use here: robots are made of primitives and convex
+// meshes.
+const std::set<std::string_view> kRefused = {"composite", "hfield", "skin", "flexcomp", "plugin"};
+
+constexpr int kMostVertices = 20000;  // of all meshes
 
 // The sections that BuildWorldXml writes or takes over from the robot.
 const std::set<std::string_view> kSections = {
@@ -73,7 +77,8 @@ class Walk {
       CheckBound(element, *attribute);
       CheckFinite(element, *attribute);
     }
-    if (kRefused.count(tag) > 0) Fail(element, tag, "is no part of a robot of primitives");
+    if (kRefused.count(tag) > 0) Fail(element, tag, "is no part of a robot of ours");
+    if (tag == "mesh") CheckMesh(element);
     if (tag == "texture") CountTexture(element);
     for (const XMLElement* child = element.FirstChildElement(); child != nullptr;
          child = child->NextSiblingElement()) {
@@ -88,7 +93,7 @@ class Walk {
 
  private:
   static constexpr const char* kNoFiles =
-      "a model must not refer to other files; build it from primitives";
+      "a model must not refer to other files, but for meshes in its folder";
 
   // What is no number is left to MuJoCo, which refuses it.
   void CheckBound(const XMLElement& element, const tinyxml2::XMLAttribute& attribute) const {
@@ -117,6 +122,41 @@ class Walk {
     }
   }
 
+  void CheckMesh(const XMLElement& mesh) {
+    for (const tinyxml2::XMLAttribute* attribute = mesh.FirstAttribute(); attribute != nullptr;
+         attribute = attribute->Next()) {
+      const std::string_view key = attribute->Name();
+      if (key != "name" && key != "vertex") {
+        Fail(mesh, key, "is not taken: a mesh is given by its name and the vertices of its hull");
+      }
+    }
+    const char* const text = mesh.Attribute("vertex");
+    std::istringstream words(text == nullptr ? "" : text);
+    std::vector<double> numbers;
+    for (std::string word; words >> word;) {
+      char* end = nullptr;
+      numbers.push_back(std::strtod(word.c_str(), &end));
+      if (*end != '\0') Fail(mesh, "vertex", "must be numbers, holds '" + word + "'");
+    }
+    if (numbers.size() < 12 || numbers.size() % 3 != 0) {
+      Fail(mesh, "vertex",
+           "must be three numbers each of four vertices or more, are " +
+               std::to_string(numbers.size()));
+    }
+    const Eigen::Map<const Eigen::Matrix3Xd> vertices(
+        numbers.data(), 3, static_cast<Eigen::Index>(numbers.size() / 3));
+    num_vertices_ += static_cast<int>(vertices.cols());
+    if (num_vertices_ > kMostVertices) {
+      Fail(mesh, "vertex",
+           "with it meshes would have more than " + std::to_string(kMostVertices) + " vertices");
+    }
+    try {
+      CheckMeshVertices(vertices);
+    } catch (const InputError& error) {
+      throw InputError(file_ + ":" + std::to_string(mesh.GetLineNum()), error.what());
+    }
+  }
+
   // Six faces of three bytes a pixel, as a sky has them, made anew for each element.
   void CountTexture(const XMLElement& texture) {
     const double width = std::max(1.0, texture.DoubleAttribute("width", 0));
@@ -128,13 +168,19 @@ class Walk {
   }
 
   const std::string& file_;
-  int num_elements_ = 0, num_joints_ = 0;
+  int num_elements_ = 0, num_joints_ = 0, num_vertices_ = 0;
   double texture_bytes_ = 0;
 };
 
 }  // namespace
 
-std::string ReadModelFile(const std::string& path) { return ReadTextFile(path, kMostBytes); }
+std::string ReadModelFile(const std::string& path) {
+  const std::string xml = InlineMeshFiles(ReadTextFile(path, kMostBytes), path);
+  if (xml.size() <= kMostBytes) return xml;
+  throw InputError(path, "is " + std::to_string(xml.size()) +
+                             " bytes long with its meshes, must be at most " +
+                             std::to_string(kMostBytes));
+}
 
 const XMLElement& ParseModel(const std::string& xml, const std::string& name,
                              tinyxml2::XMLDocument* document) {

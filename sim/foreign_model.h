@@ -11,7 +11,8 @@ class XMLElement;
 
 namespace sidestep::sim {
 
-/// The text of an MJCF file of models/. @throws InputError.
+/// The text of an MJCF file of models/, with the meshes that stand in files beside it
+/// (sim/mesh_files.h). @throws InputError.
 std::string ReadModelFile(const std::string& path);
 
 /// The root of an MJCF text, which `document` owns then. Refuses at its line what no model of ours

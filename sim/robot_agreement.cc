@@ -13,6 +13,7 @@
 #include "sidestep/scenarios/yaml_text.h"
 #include "sidestep/sim/mjcf_lines.h"
 #include "sidestep/sim/mujoco_model.h"
+#include "sidestep/sim/tied_joints.h"
 #include "sidestep/sim/world_xml.h"
 
 namespace sidestep::sim {
@@ -78,8 +79,10 @@ class Comparison {
     for (int i = 0; i < robot_.num_joints(); ++i) {
       CheckRange(i, joints_[static_cast<std::size_t>(i)]);
     }
+    const std::vector<int> mimics = CheckMimics();
     for (int joint = 0; joint < model_.njnt; ++joint) {
       if (std::count(joints_.begin(), joints_.end(), joint) > 0) continue;
+      if (std::count(mimics.begin(), mimics.end(), joint) > 0) continue;
       const std::string name = NameOf(mjOBJ_JOINT, joint);
       FailInMjcf("joint", name,
                  "is not in " + robot_.file() + ": nothing would hold it; name it there or fix it");
@@ -157,6 +160,7 @@ class Comparison {
         const int joint = joints_[static_cast<std::size_t>(i)];
         data->qpos[model_.jnt_qposadr[joint]] = q(i);
       }
+      FollowLeaders(model_, data.get());
       mj_kinematics(&model_, data.get());
       const std::vector<Pose> X_WL = robot_.ComputeLinkPoses(q);
       const Pose X_WB_mjcf = BaseIn(*data);
@@ -175,6 +179,70 @@ class Comparison {
   }
 
  private:
+  // What robot.yaml calls a joint that mimics is tied to the one that moves it in the MJCF, and
+  // nothing else is. @return those joints of the model.
+  std::vector<int> CheckMimics() const {
+    std::vector<int> mimics;
+    std::set<int> wanted;
+    for (std::size_t i = 0; i < robot_.joints().size(); ++i) {
+      const robot::Joint& joint = robot_.joints()[i];
+      if (joint.coordinate < 0 || MovingJoint(joint.coordinate) == static_cast<int>(i)) continue;
+      const std::string& leader = robot_.joint_names()[static_cast<std::size_t>(joint.coordinate)];
+      const int id = mj_name2id(&model_, mjOBJ_JOINT, joint.name.c_str());
+      if (id < 0) {
+        FailInYaml(KeyOfJoint(i) + ".name", "'" + joint.name + "' is no joint of " + mjcf_.path() +
+                                                " (there: " + Joints() + ")");
+      }
+      const int tie = TieOf(id);
+      if (tie < 0) {
+        FailInMjcf("joint", joint.name,
+                   "must be tied to '" + leader + "', which it mimics by " + InYamlOf(i, ".name") +
+                       ": <equality><joint joint1=\"" + joint.name + "\" joint2=\"" + leader +
+                       "\" polycoef=\"" + scenarios::Number(joint.offset) + " " +
+                       scenarios::Number(joint.multiplier) + " 0 0 0\"/>");
+      }
+      CheckTie(i, tie, leader);
+      mimics.push_back(id);
+      wanted.insert(tie);
+    }
+    for (int tie = 0; tie < model_.neq; ++tie) {
+      if (wanted.count(tie) > 0) continue;
+      const std::string name = NameOf(mjOBJ_JOINT, model_.eq_obj1id[tie]);
+      throw InputError(mjcf_.path(), mjcf_.Find("joint", "joint1", name), "joint '" + name + "'",
+                       "is tied, which planning takes for free: it mimics nothing in " +
+                           robot_.file() + "; leave it out");
+    }
+    return mimics;
+  }
+
+  // The only tie of a joint; -1 if it has none or several.
+  int TieOf(int joint) const {
+    int found = -1;
+    for (int tie = 0; tie < model_.neq; ++tie) {
+      if (model_.eq_type[tie] != mjEQ_JOINT || model_.eq_obj1id[tie] != joint) continue;
+      if (found >= 0) return -1;
+      found = tie;
+    }
+    return found;
+  }
+
+  void CheckTie(std::size_t i, int tie, const std::string& leader) const {
+    const robot::Joint& joint = robot_.joints()[i];
+    const double* const given = model_.eq_data + mjNEQDATA * tie;
+    const double wanted[] = {joint.offset, joint.multiplier, 0, 0, 0};
+    const int other = model_.eq_obj2id[tie];
+    bool is_same = model_.eq_active[tie] != 0 && other >= 0 && NameOf(mjOBJ_JOINT, other) == leader;
+    for (int power = 0; power < 5; ++power) {
+      is_same = is_same && AreSame(given[power], wanted[power]);
+    }
+    if (is_same) return;
+    throw InputError(mjcf_.path(), mjcf_.Find("joint", "joint1", joint.name),
+                     "joint '" + joint.name + "'",
+                     "must be tied as it mimics by " + InYamlOf(i, ".name") + ": joint2=\"" +
+                         leader + "\" polycoef=\"" + scenarios::Number(joint.offset) + " " +
+                         scenarios::Number(joint.multiplier) + " 0 0 0\"");
+  }
+
   // Between where robot.yaml and where the MJCF put a frame.
   struct Difference {
     Difference() = default;

@@ -7,6 +7,7 @@
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/number_text.h"
 #include "sidestep/sim/contact_room.h"
+#include "sidestep/sim/tied_joints.h"
 
 namespace sidestep::sim {
 
@@ -28,6 +29,7 @@ World::World(const scenarios::Scenario& scenario, MujocoModelPtr model,
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     data_->qpos[joints_[i].qpos] = q_start(static_cast<Eigen::Index>(i));
   }
+  FollowLeaders(*model_, data_.get());
   MoveObstacles();
   ComputeWhatFollows();
 }
@@ -64,7 +66,7 @@ void World::Step(const Eigen::VectorXd& torque) {
 void World::BeginAnew() {
   ticks_ = 0;
   data_->time = 0;
-  for (const Joint& joint : joints_) data_->qvel[joint.dof] = 0;
+  mju_zero(data_->qvel, model_->nv);
   MoveObstacles();
   ComputeWhatFollows();
 }

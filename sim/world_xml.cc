@@ -83,8 +83,8 @@ void CopyChildren(const XMLElement& from, XMLElement* to) {
 // Whether MJCF gives this element of a section defaults by its own `class`. (Bodies pass theirs on
 // by `childclass`.)
 bool TakesClass(const std::string& section, const std::string& tag) {
-  if (section == "actuator" || section == "tendon") return true;
-  return (section == "asset" && (tag == "mesh" || tag == "material")) ||
+  if (section == "actuator" || section == "tendon" || section == "equality") return true;
+  return (section == "asset" && tag == "material") ||
          (section == "contact" && tag == "pair");
 }
 
@@ -115,8 +115,8 @@ void MergeRobot(const scenarios::Scenario& scenario, const std::string& path, XM
            child = child->NextSiblingElement("body")) {
         body->InsertEndChild(child->DeepClone(world->GetDocument()));
       }
-    } else if (name == "asset" || name == "contact" || name == "tendon" || name == "actuator" ||
-               name == "sensor") {
+    } else if (name == "asset" || name == "contact" || name == "equality" || name == "tendon" ||
+               name == "actuator" || name == "sensor") {
       XMLElement* to = section(name.c_str());
       XMLElement* last_before = to->LastChildElement();
       CopyChildren(*from, to);

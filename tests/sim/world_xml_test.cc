@@ -197,11 +197,11 @@ TEST_F(BrokenModel, IsRefusedWithItsLine) {
             "/arm/arm.xml:2: XML_ERROR_MISMATCHED_ELEMENT");
   EXPECT_EQ(MessageFor("<robot/>"), "/arm/arm.xml:1: must be an MJCF file, whose root is <mujoco>");
   EXPECT_EQ(
-      MessageFor("<mujoco>\n<asset>\n<mesh file='a.stl'/></asset></mujoco>"),
-      "/arm/arm.xml:3: file: a model must not refer to other files; build it from primitives");
-  EXPECT_EQ(
-      MessageFor("<mujoco>\n<include file='other.xml'/></mujoco>"),
-      "/arm/arm.xml:2: include: a model must not refer to other files; build it from primitives");
+      MessageFor("<mujoco>\n<asset>\n<texture file='a.png'/></asset></mujoco>"),
+      "/arm/arm.xml:3: file: a model must not refer to other files, but for meshes in its folder");
+  EXPECT_EQ(MessageFor("<mujoco>\n<include file='other.xml'/></mujoco>"),
+            "/arm/arm.xml:2: include: a model must not refer to other files, but for meshes in its "
+            "folder");
 }
 
 TEST(WorldXml, RefusesTheNameOfAPartOfTheRobot) {

@@ -1,0 +1,139 @@
+#include "sidestep/cli/import_robot.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "sidestep/cli/console.h"
+#include "sidestep/cli/out_folder.h"
+#include "sidestep/core/atomic_file.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/core/joined.h"
+#include "sidestep/import/arm_of_tree.h"
+#include "sidestep/import/arm_pose.h"
+#include "sidestep/import/bounding_capsule.h"
+#include "sidestep/import/home_candidates.h"
+#include "sidestep/import/hull_finish.h"
+#include "sidestep/import/link_spheres.h"
+#include "sidestep/import/robot_files.h"
+#include "sidestep/import/sphere_roles.h"
+#include "sidestep/import/urdf_tree.h"
+#include "sidestep/robot/robot_model.h"
+#include "sidestep/sim/arm_file.h"
+#include "sidestep/sim/arm_survey.h"
+#include "sidestep/sim/robot_agreement.h"
+#include "sidestep/sim/tree_reader.h"
+
+namespace sidestep::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kConfigurations = 2000;
+
+std::string NameOf(const std::string& out) {
+  fs::path folder = fs::path(out).lexically_normal();
+  if (!folder.has_filename()) folder = folder.parent_path();
+  const std::string name = folder.filename().string();
+  if (name.empty() || name == "." || name == "..") {
+    throw InputError("--out", "must be a folder whose name is the robot's, is '" + out + "'");
+  }
+  return name;
+}
+
+robot::RobotTree ReadTree(const std::string& file, const import::ArmChoices& choices) {
+  if (fs::path(file).extension() != ".xml") return import::ReadUrdfTree(file, choices);
+  robot::RobotTree tree = sim::ReadMjcfTree(file, choices.visuals_as_collisions);
+  import::FinishHulls(choices, &tree);
+  return tree;
+}
+
+std::string Spelled(const robot::ArmDescription& arm, const import::LinkPairs& pairs) {
+  return Joined(pairs, ", ", [&arm](const robot::LinkPair& pair) {
+    return arm.LinkOf(pair.first).name + " and " + arm.LinkOf(pair.second).name;
+  });
+}
+
+// Of each link that can touch.
+void AddCovers(const robot::ArmDescription& arm, double cover_mm, import::RobotDetails* details) {
+  for (int link = -1; link < static_cast<int>(arm.joints.size()); ++link) {
+    const std::vector<robot::LinkSolid>& solids = arm.LinkOf(link).solids;
+    if (solids.empty()) continue;
+    for (const import::LinkSphere& sphere : import::CoverLink(solids, cover_mm / 1000)) {
+      details->spheres.push_back({link, sphere.p_LS, sphere.radius_m});
+    }
+    robot::CollisionCapsule capsule = import::CapsuleAround(solids);
+    capsule.link = link;
+    details->capsules.push_back(capsule);
+  }
+  if (details->capsules.size() > robot::RobotModel::kMaxCapsules) details->capsules.clear();
+}
+
+// Of the joints that move; those that mimic them are driven through them.
+void SetArmature(const Eigen::VectorXd& armature, robot::ArmDescription* arm) {
+  int coordinate = 0;
+  for (std::size_t i = 0; i < arm->joints.size(); ++i) {
+    if (arm->joints[i].coordinate != coordinate) continue;
+    if (arm->dynamics[i].armature == 0) arm->dynamics[i].armature = armature(coordinate);
+    ++coordinate;
+  }
+}
+
+}  // namespace
+
+void ImportRobot(const RobotImport& request) {
+  import::ArmChoices choices = request.choices;
+  choices.name = NameOf(request.out);
+  import::ImportedArm imported = import::ArmOfTree(ReadTree(request.file, choices), choices);
+  robot::ArmDescription& arm = imported.arm;
+  for (const std::string& note : imported.notes) Print("{}\n", note);
+
+  const std::string xml_name = choices.name + ".xml";
+  import::LinkPairs without_contact = import::PairsWithoutContact(arm, {});
+  const sim::MujocoModelPtr model =
+      sim::LoadArmText(import::MjcfText(arm, without_contact), request.file + ": its MJCF");
+  const sim::ArmSurvey survey = sim::SurveyArm(
+      *model, arm,
+      {import::SampleConfigurations(arm, kConfigurations), import::HomeCandidates(arm),
+       request.bandwidth_rad_s, request.armature_share});
+  if (!survey.home) {
+    throw InputError(request.file,
+                     "it touches itself wherever it was put; are its collisions right?");
+  }
+  if (!survey.always.empty()) {
+    Print("touch each other nearly always, which is left out: {}\n", Spelled(arm, survey.always));
+    without_contact = import::PairsWithoutContact(arm, survey.always);
+  }
+
+  SetArmature(survey.armature, &arm);
+  import::RobotDetails details;
+  AddCovers(arm, request.cover_mm, &details);
+  if (details.capsules.empty()) {
+    Print(
+        "more than {} links can touch: no capsules are written, by which it would be supervised\n",
+        robot::RobotModel::kMaxCapsules);
+  }
+  details.mount_spheres = import::MountSpheres(arm, details.spheres);
+  details.home = *survey.home;
+  details.self_collision =
+      import::SeparablePairs(arm, details.spheres, survey.sometimes, details.home);
+  details.stiffness = survey.stiffness;
+  details.damping = survey.damping;
+  details.bandwidth_rad_s = survey.bandwidth_rad_s;
+
+  const OutFolder folder(request.out, {"robot.yaml", xml_name});
+  const std::string xml_path = folder.path() + "/" + xml_name;
+  const std::string yaml_path = folder.path() + "/robot.yaml";
+  WriteFile(xml_path, import::MjcfText(arm, without_contact));
+  WriteFile(yaml_path, import::RobotYamlText(arm, details));
+  const robot::RobotModel robot = robot::RobotModel::FromFile(yaml_path, Pose());
+  sim::CheckAgreement(robot, *sim::LoadArmFile(xml_path), xml_path);
+
+  Print(
+      "{}: {} joints, {} links, {} spheres, {} pairs of links to be kept apart (of {} that touch "
+      "at some of {} configurations)\n",
+      choices.name, robot.num_joints(), arm.links.size(), robot.num_spheres(),
+      robot.self_collision().size(), survey.sometimes.size(), kConfigurations);
+  Print("written  {} and {}\n", yaml_path, xml_path);
+}
+
+}  // namespace sidestep::cli

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "sidestep/import/arm_choices.h"
+
+namespace sidestep::cli {
+
+/// What `sidestep import` is asked for.
+struct RobotImport {
+  std::string file;  ///< URDF, or MJCF if its name ends in .xml
+  std::string out;   ///< the robot's folder
+  import::ArmChoices choices;
+  double cover_mm = 20;
+  double bandwidth_rad_s = 50;
+  double armature_share = 0.1;
+};
+
+/// Makes the robot's folder, and says what became of it. @throws InputError.
+void ImportRobot(const RobotImport& request);
+
+}  // namespace sidestep::cli

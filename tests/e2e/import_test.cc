@@ -1,0 +1,273 @@
+// `sidestep import` of the URDFs of tests/data/urdf, as a person uses it: what it writes is the arm
+// that the URDF says, and plans and runs.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <mujoco/mujoco.h>
+#include <tinyxml2.h>
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "sidestep/core/random.h"
+#include "sidestep/robot/robot_model.h"
+#include "tests/support/bytes_of.h"
+#include "tests/support/subprocess.h"
+#include "tests/support/temporary_folder.h"
+
+namespace sidestep {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+using tinyxml2::XMLElement;
+
+const fs::path kSource = SIDESTEP_SOURCE_DIR;
+
+struct Case {
+  const char* name;
+  const char* file;  // in tests/data/urdf
+  std::vector<std::string> options;
+  std::map<std::string, double> held;  // by --fix
+  const char* tool;                    // link
+  int num_joints;
+  const char* goal;  // of the motion from home
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& one) { return out << one.name; }
+
+// The forward kinematics of a URDF, from its numbers alone.
+class UrdfKinematics {
+ public:
+  explicit UrdfKinematics(const std::string& path) {
+    document_.LoadFile(path.c_str());
+    const XMLElement* const root = document_.RootElement();
+    for (const XMLElement* joint = root->FirstChildElement("joint"); joint != nullptr;
+         joint = joint->NextSiblingElement("joint")) {
+      joints_.push_back(joint);
+    }
+  }
+
+  // Where a link is in the frame of the root, or of `base`.
+  Isometry3d PoseOf(const std::string& link, const std::map<std::string, double>& q,
+                    const std::string& base) const {
+    if (link == base) return Isometry3d::Identity();
+    for (const XMLElement* const joint : joints_) {
+      if (link != joint->FirstChildElement("child")->Attribute("link")) continue;
+      const std::string parent = joint->FirstChildElement("parent")->Attribute("link");
+      return PoseOf(parent, q, base) * OriginOf(*joint) * MotionOf(*joint, q);
+    }
+    return Isometry3d::Identity();
+  }
+
+ private:
+  static Vector3d Numbers(const XMLElement* element, const char* attribute, Vector3d otherwise) {
+    const char* const text = element == nullptr ? nullptr : element->Attribute(attribute);
+    if (text == nullptr) return otherwise;
+    std::istringstream words(text);
+    words >> otherwise.x() >> otherwise.y() >> otherwise.z();
+    return otherwise;
+  }
+
+  static Isometry3d OriginOf(const XMLElement& joint) {
+    const XMLElement* const origin = joint.FirstChildElement("origin");
+    const Vector3d rpy = Numbers(origin, "rpy", Vector3d::Zero());
+    return Eigen::Translation3d(Numbers(origin, "xyz", Vector3d::Zero())) *
+           Eigen::AngleAxisd(rpy.z(), Vector3d::UnitZ()) *
+           Eigen::AngleAxisd(rpy.y(), Vector3d::UnitY()) *
+           Eigen::AngleAxisd(rpy.x(), Vector3d::UnitX()) * Isometry3d::Identity();
+  }
+
+  double PositionOf(const XMLElement& joint, const std::map<std::string, double>& q) const {
+    if (const auto found = q.find(joint.Attribute("name")); found != q.end()) return found->second;
+    const XMLElement* const mimic = joint.FirstChildElement("mimic");
+    if (mimic == nullptr) return 0;
+    for (const XMLElement* const leader : joints_) {
+      if (std::string(leader->Attribute("name")) != mimic->Attribute("joint")) continue;
+      return mimic->DoubleAttribute("multiplier", 1) * PositionOf(*leader, q) +
+             mimic->DoubleAttribute("offset", 0);
+    }
+    return 0;
+  }
+
+  Isometry3d MotionOf(const XMLElement& joint, const std::map<std::string, double>& q) const {
+    const std::string type = joint.Attribute("type");
+    if (type == "fixed") return Isometry3d::Identity();
+    const Vector3d axis =
+        Numbers(joint.FirstChildElement("axis"), "xyz", Vector3d::UnitX()).normalized();
+    const double position = PositionOf(joint, q);
+    if (type == "prismatic") return Isometry3d(Eigen::Translation3d(position * axis));
+    return Isometry3d(Eigen::AngleAxisd(position, axis));
+  }
+
+  tinyxml2::XMLDocument document_;
+  std::vector<const XMLElement*> joints_;
+};
+
+double Apart(const Isometry3d& a, const Isometry3d& b) {
+  return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff();
+}
+
+class Import : public ::testing::TestWithParam<Case> {
+ protected:
+  Import() {
+    fs::create_directories(models_);
+    fs::create_directories(data_ / "scenarios");
+  }
+
+  Finished Sidestep(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), SIDESTEP_PROGRAM);
+    return RunProgram(arguments, {"SIDESTEP_DATA_DIR=" + data_.string()});
+  }
+
+  std::string Urdf() const { return (kSource / "tests/data/urdf" / GetParam().file).string(); }
+
+  void ImportIt() {
+    std::vector<std::string> arguments = {"import", Urdf(), "--out", (models_ / "arm").string()};
+    arguments.insert(arguments.end(), GetParam().options.begin(), GetParam().options.end());
+    const Finished finished = Sidestep(arguments);
+    ASSERT_EQ(finished.exit_code, 0) << finished.err;
+  }
+
+  const TemporaryFolder folder_;
+  const fs::path data_ = folder_.path(), models_ = data_ / "models";
+};
+
+TEST_P(Import, WritesTheKinematicsOfTheUrdf) {
+  ASSERT_NO_FATAL_FAILURE(ImportIt());
+  const robot::RobotModel robot = robot::RobotModel::Load(models_.string(), "arm", Pose());
+  EXPECT_EQ(robot.num_joints(), GetParam().num_joints);
+  const std::string mjcf = (models_ / "arm/arm.xml").string();
+  char error[1000] = "";
+  const std::unique_ptr<mjModel, decltype(&mj_deleteModel)> model(
+      mj_loadXML(mjcf.c_str(), nullptr, error, sizeof error), &mj_deleteModel);
+  ASSERT_NE(model, nullptr) << error;
+  const std::unique_ptr<mjData, decltype(&mj_deleteData)> data(mj_makeData(model.get()),
+                                                               &mj_deleteData);
+  const UrdfKinematics urdf(Urdf());
+  const std::string base = robot.base() == "world_link" ? "world" : robot.base();
+  RandomStream random(1, "q");
+  for (int trial = 0; trial < 50; ++trial) {
+    Eigen::VectorXd q(robot.num_joints());
+    std::map<std::string, double> named = GetParam().held;
+    for (int i = 0; i < q.size(); ++i) {
+      q(i) = random.Uniform(-2, 2);
+      named[robot.joint_names()[static_cast<std::size_t>(i)]] = q(i);
+    }
+    const std::vector<Pose> links = robot.ComputeLinkPoses(q);
+    for (const robot::Joint& joint : robot.joints()) {
+      const int id = mj_name2id(model.get(), mjOBJ_JOINT, joint.name.c_str());
+      if (id < 0) continue;
+      data->qpos[model->jnt_qposadr[id]] = joint.multiplier * q(joint.coordinate) + joint.offset;
+    }
+    mj_kinematics(model.get(), data.get());
+    for (std::size_t i = 0; i < links.size(); ++i) {
+      const std::string& link = robot.joints()[i].link;
+      const Isometry3d truth = urdf.PoseOf(link, named, base);
+      Isometry3d in_yaml = Isometry3d::Identity(), in_mjcf = in_yaml;
+      in_yaml.linear() = links[i].rotation().toRotationMatrix();
+      in_yaml.translation() = links[i].translation();
+      const int body = mj_name2id(model.get(), mjOBJ_BODY, link.c_str());
+      ASSERT_GE(body, 0) << link;
+      in_mjcf.linear() =
+          Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(data->xmat + 9 * body);
+      in_mjcf.translation() = Eigen::Map<const Vector3d>(data->xpos + 3 * body);
+      EXPECT_LT(Apart(in_yaml, truth), 1e-9) << link;
+      EXPECT_LT(Apart(in_mjcf, truth), 1e-9) << link;
+    }
+    Isometry3d tool = Isometry3d::Identity();
+    tool.linear() = robot.ComputeToolPose(q).rotation().toRotationMatrix();
+    tool.translation() = robot.ComputeToolPose(q).translation();
+    EXPECT_LT(Apart(tool, urdf.PoseOf(GetParam().tool, named, base)), 1e-9);
+  }
+}
+
+// A ball rolls by, at a height and distance at which these arms reach.
+TEST_P(Import, WritesARobotThatMovesAmongMovingThings) {
+  ASSERT_NO_FATAL_FAILURE(ImportIt());
+  const std::string scenario = (data_ / "scenarios/passing_ball.yaml").string();
+  std::ofstream(scenario) << R"(
+description: An imported arm moves while a ball passes
+robot: {model: arm, base: {position_m: [0, 0, 0]}}
+task: {start: home, goal: )"
+                          << GetParam().goal << R"(}
+horizon: {duration_s: 3.0, step_s: 0.1}
+workspace: {first_center_m: [-1.2, -1.2, 0.02], cell_m: 0.04, cells: [60, 60, 40]}
+floor_m: 0
+moving_obstacles:
+  - name: ball
+    shape: {sphere: {radius_m: 0.1}}
+    motion:
+      linear: {start_m: [0.9, -1, 0.5], direction: [0, 1, 0], speed_m_s: 0.5}
+planner: {name: gpmp, epsilon_m: 0.1, sigma_obs: 0.05, n_int: 1}
+knowledge: prediction
+predictor: kalman_cv
+replanning: {rate_hz: 10, latency_s: 0.1}
+sensor: {name: occupancy, rate_hz: 30}
+seed: 1
+)";
+  const fs::path out = data_ / "out";
+  const Finished finished = Sidestep({"run", scenario, "--out", out.string()});
+  ASSERT_EQ(finished.exit_code, 0) << finished.err;
+  const auto result = nlohmann::json::parse(BytesOf(out / "result.json"));
+  EXPECT_EQ(result["outcome"], "goal") << finished.out;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Urdfs, Import,
+    ::testing::Values(
+        Case{"SixAxis", "six_axis.urdf", {}, {}, "wrist_3", 6, "[0.8, -0.7, 0.9, 0.3, 0.5, 0]"},
+        Case{"SevenAxisOfMeshes",
+             "arm_parts/urdf/seven_axis.urdf",
+             {},
+             {},
+             "ee",
+             7,
+             "[0.8, 0.6, 0, 0.8, 0, -0.5, 0]"},
+        Case{"SlidingJoints", "slider.urdf", {}, {}, "quill", 4, "[0.3, 0.6, -0.8, 0.05]"},
+        Case{"MimicGripper",
+             "mimic_gripper.urdf",
+             {},
+             {},
+             "left_finger",
+             7,
+             "[0.8, -0.7, 0.9, 0.3, 0.5, 0, 0.03]"},
+        Case{"HeldGripper",
+             "mimic_gripper.urdf",
+             {"--tip", "grasp", "--fix", "left_finger_joint=0.02"},
+             {{"left_finger_joint", 0.02}},
+             "grasp",
+             6,
+             "[0.8, -0.7, 0.9, 0.3, 0.5, 0]"},
+        Case{"OneOfTwoArms",
+             "branch.urdf",
+             {"--tip", "left_hand"},
+             {},
+             "left_hand",
+             3,
+             "[-1, 0.6, -0.8]"},
+        Case{"FixedChains",
+             "fixed_chains.urdf",
+             {},
+             {},
+             "tool_tip",
+             6,
+             "[0.8, -0.7, 0.9, 0.3, 0.5, 0]"},
+        Case{"XacroOutput",
+             "xacro_output.urdf",
+             {"--cylinders-as-capsules", "--ramp-s", "0.3"},
+             {},
+             "lab_wrist_3",
+             6,
+             "[0.8, -0.7, 0.9, 0.3, 0.5, 0]"}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+}  // namespace
+}  // namespace sidestep
