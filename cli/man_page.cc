@@ -55,7 +55,7 @@ std::string Entry(const std::string& head, const std::string& text) {
   return ".TP\n" + head + "\n" + Escape(text) + "\n";
 }
 
-std::string Options(const CLI::App& command) {
+std::string OptionsOf(const CLI::App& command) {
   std::string text;
   for (const CLI::Option* const option : command.get_options()) {
     if (option->get_positional()) {
@@ -88,11 +88,11 @@ std::string Page(const std::string& call, const CLI::App& command, const CLI::Ap
   for (const CLI::App* const inner : commands) {
     text += Entry(Bold(inner->get_name()), inner->get_description());
   }
-  text += ".SH OPTIONS\n" + Options(command);
+  text += ".SH OPTIONS\n" + OptionsOf(command);
   if (!is_program) {
     for (const CLI::App* const inner : commands) {
       text += ".SH \"" + Escape(Upper(inner->get_name())) + "\"\n" +
-              Synopsis(call + " " + inner->get_name(), *inner) + Options(*inner);
+              Synopsis(call + " " + inner->get_name(), *inner) + OptionsOf(*inner);
     }
   }
   for (const CLI::App* const with_footer : {&command, is_program ? nullptr : &program}) {
