@@ -22,10 +22,11 @@ constexpr int kCellsAlong = 48;
 constexpr int kCandidates = 6000;  // about, inside
 constexpr int kSteps = 200;        // of a descent
 constexpr int kRemovals = 2;       // tried for each number of spheres
-constexpr int kRounds = 4;         // of looking for what sticks out, and pulling it in
+constexpr int kRounds = 3;         // of looking for what sticks out, and pulling it in
 // In them: of the tolerance, what is aimed at, and what counts as sticking out; and how far spheres
 // move at first, of their radii.
 constexpr double kAimed = 0.98, kSeen = 0.99, kNudge = 0.01;
+constexpr double kWorthwhile = 0.985;  // of the volume with fewer spheres: more are of no use
 constexpr int kRoughSlices = 60, kFineSlices = 150;
 
 class Search {
@@ -40,8 +41,10 @@ class Search {
     Begin();
     for (int count = task_.most_spheres; count > 1; --count) TakeOneAway(Best(count).spheres);
     CoverFront front;
+    double least = kInfinity;  // before it is finished
     for (int count = 1; count <= task_.most_spheres; ++count) {
-      if (Best(count).spheres.empty()) continue;
+      if (!(Best(count).volume_m3 < kWorthwhile * least)) continue;
+      least = Best(count).volume_m3;
       SphereCover cover = Finish(Best(count).spheres);
       if (front.empty() || cover.volume_m3 < front.back().volume_m3) {
         front.push_back(std::move(cover));
