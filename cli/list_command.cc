@@ -14,6 +14,7 @@
 #include "sidestep/core/joined.h"
 #include "sidestep/planner/parameters.h"
 #include "sidestep/planner/registry.h"
+#include "sidestep/robot/model_name.h"
 #include "sidestep/robot/robot_model.h"
 #include "sidestep/scenarios/scenario.h"
 #include "sidestep/sdf/prediction/registry.h"
@@ -60,7 +61,13 @@ class Catalogue {
  public:
   explicit Catalogue(const DataPaths& paths) {
     AddScenarios(paths.scenarios);
-    kinds_.push_back({"robots", Items(robot::RobotModel::ListNames(paths.models))});
+    Kind& robots = kinds_.emplace_back(Kind{"robots", {}});
+    for (const std::string& name : robot::RobotModel::ListNames(paths.models)) {
+      robots.items.push_back({name});
+      for (const std::string& variant : robot::VariantNames(paths.models, name)) {
+        robots.items.push_back({variant, "with other spheres"});
+      }
+    }
     Kind& knowledge = kinds_.emplace_back(Kind{"knowledge", {}});
     for (const sdf::Knowledge one : sdf::kAllKnowledge) {
       knowledge.items.push_back({ToString(one)});

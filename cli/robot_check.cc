@@ -48,23 +48,39 @@ std::vector<import::CoverSphere> SpheresOf(const sim::RigidLink& link) {
   return spheres;
 }
 
-std::vector<std::string> MissingLimits(const robot::RobotModel& robot) {
-  std::vector<std::string> missing;
+std::vector<std::pair<std::string, std::vector<std::string>>> MissingLimits(
+    const robot::RobotModel& robot) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> missing;
   for (int i = 0; i < robot.num_joints(); ++i) {
-    const auto joint = static_cast<std::size_t>(i);
-    const robot::JointLimits& limits = robot.limits()[joint];
-    const robot::Joint& moving =
-        robot.joints()[static_cast<std::size_t>(robot.moving_joints()[joint])];
-    const robot::LimitKeys keys = robot::LimitKeysOf(moving.kind);
-    for (const auto& [key, value] :
-         {std::pair(keys.q_min, limits.q_min), std::pair(keys.q_max, limits.q_max),
-          std::pair(keys.v_max, limits.v_max), std::pair(keys.a_max, limits.a_max),
-          std::pair(keys.jerk_max, limits.jerk_max),
-          std::pair(keys.torque_max, limits.torque_max)}) {
-      if (std::isinf(value)) missing.push_back(robot.joint_names()[joint] + ": " + key);
+    const auto number = static_cast<std::size_t>(i);
+    const robot::JointLimits& limits = robot.limits()[number];
+    const robot::Joint& joint =
+        robot.joints()[static_cast<std::size_t>(robot.moving_joints()[number])];
+    const robot::LimitKeys keys = robot::LimitKeysOf(joint.kind);
+    const std::pair<const char*, double> all[] = {
+        {keys.q_min, limits.q_min},       {keys.q_max, limits.q_max},
+        {keys.v_max, limits.v_max},       {keys.a_max, limits.a_max},
+        {keys.jerk_max, limits.jerk_max}, {keys.torque_max, limits.torque_max}};
+    for (const auto& [key, value] : all) {
+      if (!std::isinf(value)) continue;
+      const std::string name = key;
+      auto found = std::find_if(missing.begin(), missing.end(),
+                                [&name](const auto& one) { return one.first == name; });
+      if (found == missing.end()) found = missing.insert(missing.end(), {name, {}});
+      found->second.push_back(joint.name);
     }
   }
   return missing;
+}
+
+std::string LimitsText(const RobotReport& report, int num_joints) {
+  if (report.missing_limits.empty()) {
+    return "all there are: position, velocity, acceleration, jerk, torque";
+  }
+  return "not given: " + Joined(report.missing_limits, "; ", [num_joints](const auto& limit) {
+           const bool is_of_all = std::ssize(limit.second) == num_joints;
+           return limit.first + " of " + (is_of_all ? "all joints" : Joined(limit.second));
+         });
 }
 
 // How a pair of links stands.
@@ -179,10 +195,7 @@ std::string ReportText(const CheckedRobot& checked, const RobotReport& report) {
       "frames           at most {:.1e} m and {:.1e} rad from the MJCF's, at {} random "
       "configurations\n",
       report.frames.apart_m, report.frames.turned_rad, report.num_frames);
-  text += fmt::format("limits           {}\n",
-                      report.missing_limits.empty()
-                          ? "all there are: position, velocity, acceleration, jerk, torque"
-                          : "not given: " + Joined(report.missing_limits));
+  text += fmt::format("limits           {}\n", LimitsText(report, robot.num_joints()));
   text += fmt::format("configurations   {} named, {}\n", robot.configurations().size(),
                       report.touching.empty() ? "none of them touches itself" : "of them touch:");
   for (const TouchingPose& pose : report.touching) {
@@ -233,7 +246,8 @@ std::string ReportJson(const CheckedRobot& checked, const RobotReport& report) {
   json["frames"] = {{"configurations", report.num_frames},
                     {"apart_m", report.frames.apart_m},
                     {"turned_rad", report.frames.turned_rad}};
-  json["missing_limits"] = report.missing_limits;
+  json["missing_limits"] = Json::object();
+  for (const auto& [key, joints] : report.missing_limits) json["missing_limits"][key] = joints;
   json["configurations"] = robot.configurations().size();
   json["touching_configurations"] = Json::array();
   for (const TouchingPose& pose : report.touching) {

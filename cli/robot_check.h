@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sidestep/import/sphere_cover.h"
@@ -41,8 +42,9 @@ struct TouchingPose {
 struct RobotReport {
   int num_frames = 0;  ///< configurations at which frames were compared
   sim::FrameDifference frames;
-  std::vector<std::string> missing_limits;  ///< "joint3: a_max_rad_s2"
-  std::vector<TouchingPose> touching;       ///< named configurations, where something touches
+  /// The limits that are not given, and of which joints.
+  std::vector<std::pair<std::string, std::vector<std::string>>> missing_limits;
+  std::vector<TouchingPose> touching;  ///< named configurations, where something touches
   std::vector<LinkReport> links;
   double uncovered_m = 0;  ///< the worst of all links
   double excess = 0;       ///< of volume, all links together

@@ -1,5 +1,6 @@
 #include "sidestep/import/cover_front.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -22,10 +23,12 @@ constexpr int kCellsAlong = 48;
 constexpr int kCandidates = 6000;  // about, inside
 constexpr int kSteps = 200;        // of a descent
 constexpr int kRemovals = 2;       // tried for each number of spheres
-constexpr int kRounds = 4;         // of looking for what sticks out, and pulling it in
+constexpr int kFew = 8;            // spheres, of which each is tried
+constexpr int kRounds = 3;         // of looking for what sticks out, and pulling it in
 // In them: of the tolerance, what is aimed at, and what counts as sticking out; and how far spheres
 // move at first, of their radii.
 constexpr double kAimed = 0.98, kSeen = 0.99, kNudge = 0.01;
+constexpr double kWorthwhile = 0.985;  // of the volume with fewer spheres: more are of no use
 constexpr int kRoughSlices = 60, kFineSlices = 150;
 
 class Search {
@@ -39,9 +42,15 @@ class Search {
   CoverFront Run() {
     Begin();
     for (int count = task_.most_spheres; count > 1; --count) TakeOneAway(Best(count).spheres);
+    // Few spheres are tried more thoroughly: they are quick, and what most links end with.
+    const int few = std::min(kFew, task_.most_spheres);
+    for (int count = 1; count < few; ++count) SplitOne(Best(count).spheres);
+    for (int count = few; count > 1; --count) TakeOneAway(Best(count).spheres);
     CoverFront front;
+    double least = kInfinity;  // before it is finished
     for (int count = 1; count <= task_.most_spheres; ++count) {
-      if (Best(count).spheres.empty()) continue;
+      if (!(Best(count).volume_m3 < kWorthwhile * least)) continue;
+      least = Best(count).volume_m3;
       SphereCover cover = Finish(Best(count).spheres);
       if (front.empty() || cover.volume_m3 < front.back().volume_m3) {
         front.push_back(std::move(cover));
@@ -109,8 +118,28 @@ class Search {
     }
     std::stable_sort(without.begin(), without.end(),
                      [](const auto& a, const auto& b) { return a.first < b.first; });
-    for (std::size_t i = 0; i < without.size() && i < kRemovals; ++i) {
+    const std::size_t tries = static_cast<int>(spheres.size()) <= kFew ? kFew : kRemovals;
+    for (std::size_t i = 0; i < without.size() && i < tries; ++i) {
       Keep(ShrinkCover(points_, task_.cover_m, without[i].second, kSteps));
+    }
+  }
+
+  // Tries to put two spheres in the place of one, for each, along the longest way through it.
+  void SplitOne(const std::vector<CoverSphere>& spheres) {
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+      const CoverSphere& sphere = spheres[i];
+      const double reach_m = sphere.radius_m + task_.cover_m;
+      Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+      for (const auto& p : points_.colwise()) {
+        const Eigen::Vector3d off = p - sphere.center_m;
+        if (off.squaredNorm() <= reach_m * reach_m) spread += off * off.transpose();
+      }
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
+      const Eigen::Vector3d aside = sphere.radius_m / 2 * axes.eigenvectors().col(2);
+      std::vector<CoverSphere> more = spheres;
+      more[i].center_m += aside;
+      more.push_back({sphere.center_m - aside, sphere.radius_m});
+      Keep(ShrinkCover(points_, task_.cover_m, more, kSteps));
     }
   }
 

@@ -26,8 +26,8 @@ struct CoverTask {
 };
 
 /// First a greedy choice among balls around points inside, of many sizes; then one sphere after the
-/// other is taken away, and the others make up for it, and shrink (shrink_cover.h). Always finds at
-/// least one cover.
+/// other is taken away, and the others make up for it, and shrink (shrink_cover.h); of few spheres,
+/// each is also split in two. Always finds at least one cover.
 CoverFront FindCovers(const CoverTask& task);
 
 }  // namespace sidestep::import

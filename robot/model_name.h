@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace sidestep::robot {
 
@@ -19,5 +20,9 @@ inline std::string ModelVariant(const std::string& name) {
 inline std::string MjcfPath(const std::string& models_dir, const std::string& name) {
   return models_dir + "/" + ModelFolder(name) + "/" + ModelFolder(name) + ".xml";
 }
+
+/// The variants of a robot, sorted, as `panda:covered`: the files beside its robot.yaml that extend
+/// a robot.
+std::vector<std::string> VariantNames(const std::string& models_dir, const std::string& folder);
 
 }  // namespace sidestep::robot

@@ -332,6 +332,11 @@ RobotModel RobotModel::Load(const std::string& models_dir, const std::string& na
   }
   const std::string path =
       models_dir + "/" + folder + "/" + (variant.empty() ? "robot" : variant) + ".yaml";
+  if (std::error_code error; !std::filesystem::exists(path, error)) {
+    const std::vector<std::string> variants = VariantNames(models_dir, folder);
+    throw InputError(models_dir, "holds no variant '" + name + "' (known: " +
+                                     (variants.empty() ? "none" : Joined(variants)) + ")");
+  }
   RobotModel model = FromFile(path, X_WB);
   if (model.name() != folder) {
     throw InputError(path, "name: must be the folder's, is '" + model.name() + "'");

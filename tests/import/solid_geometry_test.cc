@@ -89,7 +89,7 @@ TEST(CheckClosed, NamesTheMeshAndWhatIsWrongWithIt) {
   TriangleMesh open = box;
   open.triangles = box.triangles.leftCols(11);
   EXPECT_EQ(Complaint(open),
-            "arm.stl: is not closed: the edge from (1, -1, -1) to (1, 1, 1) has a triangle on one "
+            "arm.stl: is not closed: the edge from (1, -1, -1) to (1, -1, 1) has a triangle on one "
             "side only");
   TriangleMesh turned = box;
   turned.triangles.col(0).head<2>().reverseInPlace();

@@ -16,6 +16,7 @@
 #include "sidestep/planner/clearance.h"
 #include "sidestep/planner/first_guess.h"
 #include "sidestep/planner/gp_planner.h"
+#include "sidestep/robot/model_name.h"
 #include "tests/support/ball_field.h"
 
 namespace sidestep::planner {
@@ -100,7 +101,7 @@ class SelfContact : public ::testing::TestWithParam<std::string> {};
 // contacts with the fixed base, which has no spheres.
 TEST_P(SelfContact, IsSeenWithinTheMarginOfThePlanner) {
   const robot::RobotModel robot = robot::RobotModel::Load(kModels, GetParam(), Pose());
-  const std::string path = kModels + "/" + GetParam() + "/" + GetParam() + ".xml";
+  const std::string path = robot::MjcfPath(kModels, GetParam());
   char error[1000] = "";
   const std::unique_ptr<mjModel, void (*)(mjModel*)> model(
       mj_loadXML(path.c_str(), nullptr, error, sizeof error), mj_deleteModel);
@@ -140,15 +141,31 @@ TEST_P(SelfContact, IsSeenWithinTheMarginOfThePlanner) {
   EXPECT_GT(num_contacts, 80) << "too few to tell";
   EXPECT_LE(200 * num_missed, num_contacts);
   EXPECT_LT(furthest_m, kMargin_m + 0.025);
+  const auto is_of_base = [](const robot::CollisionSphere& sphere) { return sphere.link < 0; };
+  if (std::any_of(robot.spheres().begin(), robot.spheres().end(), is_of_base)) {
+    EXPECT_EQ(num_base_missed, 0);
+  }
   std::cout << GetParam() << ": of " << kConfigurations << " random configurations " << num_touching
             << " touch and " << num_near << " have links nearer than the margin; of "
             << num_contacts << " contacts " << num_missed << " lie outside it, at a gap of at most "
             << furthest_m << " m; so do " << num_base_missed << " with the base\n";
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, SelfContact,
-                         ::testing::ValuesIn(robot::RobotModel::ListNames(kModels)),
-                         [](const auto& test) { return test.param; });
+std::vector<std::string> RobotsAndVariants() {
+  std::vector<std::string> names;
+  for (const std::string& name : robot::RobotModel::ListNames(kModels)) {
+    names.push_back(name);
+    for (const std::string& variant : robot::VariantNames(kModels, name)) names.push_back(variant);
+  }
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, SelfContact, ::testing::ValuesIn(RobotsAndVariants()),
+                         [](const auto& test) {
+                           std::string name = test.param;
+                           std::replace(name.begin(), name.end(), ':', '_');
+                           return name;
+                         });
 
 }  // namespace
 }  // namespace sidestep::planner

@@ -1,5 +1,5 @@
-// What every folder of models/ with a robot.yaml must keep: a new robot is tested by being there.
-// What is demanded follows from its robot.yaml.
+// What every folder of models/ with a robot.yaml must keep, and each variant in it: a new robot is
+// tested by being there. What is demanded follows from its robot.yaml.
 
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -17,6 +18,7 @@
 
 #include "sidestep/core/random.h"
 #include "sidestep/core/shape.h"
+#include "sidestep/robot/model_name.h"
 #include "sidestep/robot/robot_model.h"
 #include "tests/robot/geom_surface.h"
 
@@ -27,13 +29,23 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMajorMatrixXd = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// The folders of all robots: those that are shipped and the example on a rail.
-std::vector<std::string> Folders() {
+// The files of all robots: those that are shipped, their variants, and the example on a rail.
+std::vector<std::string> Files() {
   const std::string models = SIDESTEP_SOURCE_DIR "/models";
-  std::vector<std::string> folders = {SIDESTEP_SOURCE_DIR "/examples/robot/panda_rail"};
-  for (const std::string& name : RobotModel::ListNames(models))
-    folders.push_back(models + "/" + name);
-  return folders;
+  std::vector<std::string> files = {SIDESTEP_SOURCE_DIR "/examples/robot/panda_rail/robot.yaml"};
+  for (const std::string& name : RobotModel::ListNames(models)) {
+    files.push_back(models + "/" + name + "/robot.yaml");
+    for (const std::string& variant : VariantNames(models, name)) {
+      files.push_back(models + "/" + name + "/" + ModelVariant(variant) + ".yaml");
+    }
+  }
+  return files;
+}
+
+// "panda", or "panda_covered" of a variant.
+std::string NameOfFile(const std::filesystem::path& file) {
+  const std::string folder = file.parent_path().filename().string();
+  return file.stem() == "robot" ? folder : folder + "_" + file.stem().string();
 }
 
 bool IsSolid(const mjModel& model, int geom) {
@@ -42,8 +54,9 @@ bool IsSolid(const mjModel& model, int geom) {
 
 class EveryModel : public ::testing::TestWithParam<std::string> {
  protected:
-  EveryModel() : robot_(RobotModel::FromFile(GetParam() + "/robot.yaml", Pose())) {
-    const std::string path = GetParam() + "/" + robot_.name() + ".xml";
+  EveryModel() : robot_(RobotModel::FromFile(GetParam(), Pose())) {
+    const std::string path =
+        (std::filesystem::path(GetParam()).parent_path() / (robot_.name() + ".xml")).string();
     char error[1000] = "";
     model_.reset(mj_loadXML(path.c_str(), nullptr, error, sizeof error));
     if (model_ == nullptr) throw std::runtime_error(error);
@@ -241,6 +254,17 @@ const std::map<std::string, double> kPandaSticksOut_mm = {
 const std::map<std::string, std::map<std::string, double>> kSticksOut_mm = {
     {"panda", kPandaSticksOut_mm},
     {"panda_rail", kPandaSticksOut_mm},
+    {"panda_covered",
+     {{"link1", 5},
+      {"link2", 5},
+      {"link3", 5},
+      {"link4", 5},
+      {"link5", 5},
+      {"link6", 5},
+      {"link7", 5},
+      {"hand", 5},
+      {"left_finger", 5},
+      {"right_finger", 5}}},
     {"wam",
      {{"link1", 15},
       {"link2", 19},
@@ -269,7 +293,7 @@ TEST_P(EveryModel, SticksOutOfItsSpheresByNoMoreThanIsDocumented) {
       }
     }
   }
-  const auto listed = kSticksOut_mm.find(robot_.name());
+  const auto listed = kSticksOut_mm.find(NameOfFile(GetParam()));
   for (const auto& [body, furthest] : furthest_mm) {
     std::cout << robot_.name() << ": " << body << " sticks out by " << furthest << " mm\n";
     const bool is_listed = listed != kSticksOut_mm.end() && listed->second.count(body) > 0;
@@ -333,9 +357,8 @@ TEST_P(EveryModel, IsHeldStablyAndWellDampedByItsGains) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, EveryModel, ::testing::ValuesIn(Folders()), [](const auto& test) {
-  return test.param.substr(test.param.rfind('/') + 1);
-});
+INSTANTIATE_TEST_SUITE_P(Models, EveryModel, ::testing::ValuesIn(Files()),
+                         [](const auto& test) { return NameOfFile(test.param); });
 
 }  // namespace
 }  // namespace sidestep::robot

@@ -99,13 +99,18 @@ TEST_F(Variant, IsRefusedAtItsLineWhereItIsWrong) {
             "bad.yaml:3: mount.links");
 }
 
-TEST_F(Variant, ThatIsNotThereIsMissed) {
+TEST_F(Variant, ThatIsNotThereIsToldWithThoseThatAre) {
+  Write("round.yaml", "extends: robot.yaml\n");
+  Write("whole.yaml", "name: panda\n");
+  Write("broken.yaml", "extends: [\n");
+  EXPECT_EQ(VariantNames(temporary_.path().string(), "panda"),
+            std::vector<std::string>{"panda:round"});
   try {
     Load("gone");
     FAIL() << "was found";
   } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()).substr(0, (folder_ / "gone.yaml").string().size()),
-              (folder_ / "gone.yaml").string());
+    EXPECT_EQ(error.what(),
+              temporary_.path().string() + ": holds no variant 'panda:gone' (known: panda:round)");
   }
 }
 

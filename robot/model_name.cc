@@ -1,0 +1,29 @@
+#include "sidestep/robot/model_name.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "sidestep/core/input_error.h"
+#include "sidestep/core/yaml_reader.h"
+
+namespace sidestep::robot {
+
+std::vector<std::string> VariantNames(const std::string& models_dir, const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(fs::path(models_dir) / folder, error)) {
+    if (entry.path().extension() != ".yaml") continue;
+    try {
+      if (!YamlReader::FromFile(entry.path().string()).Has("extends")) continue;
+    } catch (const InputError&) {  // whoever asks for it by name is told
+      continue;
+    }
+    names.push_back(folder + ":" + entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace sidestep::robot
