@@ -61,6 +61,7 @@ void AddImportCommand(CommandLine& line) {
       ->add_option("--package-path", import.choices.package_paths,
                    "DIR with ROS packages, or a package, for package:// [folders around ROBOT]")
       ->allow_extra_args(false);
+  command->add_flag("--overwrite", import.overwrite, "Replace a robot that is there");
   command->add_option("--base", import.choices.base, "LINK that the robot begins with [the root]");
   command->add_option("--tip", import.choices.tip,
                       "LINK that it ends with, its tool [the one end that most joints lead to]");

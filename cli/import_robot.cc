@@ -83,6 +83,11 @@ void SetArmature(const Eigen::VectorXd& armature, robot::ArmDescription* arm) {
 void ImportRobot(const RobotImport& request) {
   import::ArmChoices choices = request.choices;
   choices.name = NameOf(request.out);
+  std::error_code error;
+  if (!request.overwrite && fs::exists(fs::path(request.out) / "robot.yaml", error)) {
+    throw InputError("--out",
+                     "'" + request.out + "' holds a robot already; --overwrite replaces it");
+  }
   import::ImportedArm imported = import::ArmOfTree(ReadTree(request.file, choices), choices);
   robot::ArmDescription& arm = imported.arm;
   for (const std::string& note : imported.notes) Print("{}\n", note);

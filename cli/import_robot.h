@@ -11,6 +11,7 @@ struct RobotImport {
   std::string file;  ///< URDF, or MJCF if its name ends in .xml
   std::string out;   ///< the robot's folder
   import::ArmChoices choices;
+  bool overwrite = false;  ///< a robot that is there
   double cover_mm = 20;
   double bandwidth_rad_s = 50;
   double armature_share = 0.1;
