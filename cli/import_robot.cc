@@ -100,7 +100,7 @@ void ImportRobot(const RobotImport& request) {
       *model, arm,
       {import::SampleConfigurations(arm, kConfigurations), import::HomeCandidates(arm),
        request.bandwidth_rad_s, request.armature_share});
-  if (!survey.home) {
+  if (survey.free.empty()) {
     throw InputError(request.file,
                      "it touches itself wherever it was put; are its collisions right?");
   }
@@ -117,8 +117,15 @@ void ImportRobot(const RobotImport& request) {
         "more than {} links can touch: no capsules are written, by which it would be supervised\n",
         robot::RobotModel::kMaxCapsules);
   }
-  details.mount_spheres = import::MountSpheres(arm, details.spheres);
-  details.home = *survey.home;
+  const std::vector<int> mount = import::MountSpheres(arm, details.spheres);
+  details.home = import::ChooseHome(arm, details.spheres, mount, survey.sometimes, survey.free);
+  details.mount_spheres = import::WithSpheresBelow(arm, details.spheres, mount, details.home);
+  if (const std::size_t more = details.mount_spheres.size() - mount.size(); more > 0) {
+    Print(
+        "{} spheres of what moves reach below the base wherever it was put: they count as "
+        "mounted\n",
+        more);
+  }
   details.self_collision =
       import::SeparablePairs(arm, details.spheres, survey.sometimes, details.home);
   details.stiffness = survey.stiffness;
