@@ -53,19 +53,17 @@ std::string Spelled(const robot::ArmDescription& arm, const import::LinkPairs& p
   });
 }
 
-// Of each link that can touch.
-void AddCovers(const robot::ArmDescription& arm, double cover_mm, import::RobotDetails* details) {
+// Of each link that can touch; none if they would be too many.
+std::vector<robot::CollisionCapsule> CapsulesOf(const robot::ArmDescription& arm) {
+  std::vector<robot::CollisionCapsule> capsules;
   for (int link = -1; link < static_cast<int>(arm.joints.size()); ++link) {
     const std::vector<robot::LinkSolid>& solids = arm.LinkOf(link).solids;
     if (solids.empty()) continue;
-    for (const import::LinkSphere& sphere : import::CoverLink(solids, cover_mm / 1000)) {
-      details->spheres.push_back({link, sphere.p_LS, sphere.radius_m});
-    }
-    robot::CollisionCapsule capsule = import::CapsuleAround(solids);
-    capsule.link = link;
-    details->capsules.push_back(capsule);
+    capsules.push_back(import::CapsuleAround(solids));
+    capsules.back().link = link;
   }
-  if (details->capsules.size() > robot::RobotModel::kMaxCapsules) details->capsules.clear();
+  if (capsules.size() > robot::RobotModel::kMaxCapsules) capsules.clear();
+  return capsules;
 }
 
 // Of the joints that move; those that mimic them are driven through them.
@@ -111,7 +109,8 @@ void ImportRobot(const RobotImport& request) {
 
   SetArmature(survey.armature, &arm);
   import::RobotDetails details;
-  AddCovers(arm, request.cover_mm, &details);
+  details.spheres = import::CoverArm(arm, request.spheres);
+  details.capsules = CapsulesOf(arm);
   if (details.capsules.empty()) {
     Print(
         "more than {} links can touch: no capsules are written, by which it would be supervised\n",

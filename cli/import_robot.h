@@ -3,6 +3,7 @@
 #include <string>
 
 #include "sidestep/import/arm_choices.h"
+#include "sidestep/import/link_spheres.h"
 
 namespace sidestep::cli {
 
@@ -12,7 +13,7 @@ struct RobotImport {
   std::string out;   ///< the robot's folder
   import::ArmChoices choices;
   bool overwrite = false;  ///< a robot that is there
-  double cover_mm = 20;
+  import::SphereRequest spheres;
   double bandwidth_rad_s = 50;
   double armature_share = 0.1;
 };

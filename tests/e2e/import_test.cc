@@ -350,6 +350,18 @@ TEST_F(ImportMjcf, KeepsAFingerThatMimicsAnother) {
   EXPECT_EQ(robot.num_joints(), 5);
 }
 
+TEST_F(ImportMjcf, MakesNoMoreSpheresThanItMay) {
+  for (const std::string most : {"20", "60"}) {
+    const Finished finished =
+        Sidestep(kClasses, {"--tip", "tcp", "--velocity", "2", "--spheres", most, "--overwrite"});
+    ASSERT_EQ(finished.exit_code, 0) << finished.err;
+    const robot::RobotModel robot = robot::RobotModel::Load(folder_.path().string(), "arm", Pose());
+    EXPECT_LE(robot.num_spheres(), std::stoi(most));
+  }
+  EXPECT_THAT(Sidestep(kClasses, {"--tip", "tcp", "--velocity", "2", "--spheres", "5"}).err,
+              testing::HasSubstr("--out: "));  // it is there
+}
+
 TEST_F(ImportMjcf, SaysWhatNeedsANewerMujoco) {
   const Finished finished =
       Sidestep(Altered("<body name=\"upper\"", "<body gravcomp=\"1\" name=\"upper\""),
