@@ -35,11 +35,15 @@ struct Options {
   RobotImport import;
   std::vector<std::string> fix;
   bool keep_up_axis = false;
+  double cover_mm = 5;
 };
 
 int Import(Options options) {
   options.import.choices.fix = ParseFixed(options.fix);
   options.import.choices.turn_up_axis = !options.keep_up_axis;
+  if (options.import.spheres.num_spheres == 0) {
+    options.import.spheres.cover_m = options.cover_mm / 1000;
+  }
   ImportRobot(options.import);
   return 0;
 }
@@ -61,6 +65,7 @@ void AddImportCommand(CommandLine& line) {
       ->add_option("--package-path", import.choices.package_paths,
                    "DIR with ROS packages, or a package, for package:// [folders around ROBOT]")
       ->allow_extra_args(false);
+  command->add_flag("--overwrite", import.overwrite, "Replace a robot that is there");
   command->add_option("--base", import.choices.base, "LINK that the robot begins with [the root]");
   command->add_option("--tip", import.choices.tip,
                       "LINK that it ends with, its tool [the one end that most joints lead to]");
@@ -68,10 +73,16 @@ void AddImportCommand(CommandLine& line) {
       ->add_option("--fix", options->fix,
                    "JOINT=VALUE: hold a joint there [rad, m]; those beside the chain are held at 0")
       ->allow_extra_args(false);
+  CLI::Option* const cover =
+      command
+          ->add_option("--cover-mm", options->cover_mm,
+                       "How far what can touch may stick out of the collision spheres [mm] [5]")
+          ->check(NumberFrom(0.5, 100.0));
   command
-      ->add_option("--cover-mm", import.cover_mm,
-                   "How far collision spheres may stick out of what they cover [mm] [20]")
-      ->check(NumberFrom(1.0, 200.0));
+      ->add_option("--spheres", import.spheres.num_spheres,
+                   "Collision spheres of the whole robot, at most [as many as it takes]")
+      ->check(NumberFrom(1, 1000))
+      ->excludes(cover);
   command->add_flag("--cylinders-as-capsules", import.choices.cylinders_as_capsules,
                     "Round the ends of cylinders off, beyond them");
   command->add_flag("--visuals-as-collisions", import.choices.visuals_as_collisions,

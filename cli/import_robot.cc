@@ -53,19 +53,17 @@ std::string Spelled(const robot::ArmDescription& arm, const import::LinkPairs& p
   });
 }
 
-// Of each link that can touch.
-void AddCovers(const robot::ArmDescription& arm, double cover_mm, import::RobotDetails* details) {
+// Of each link that can touch; none if they would be too many.
+std::vector<robot::CollisionCapsule> CapsulesOf(const robot::ArmDescription& arm) {
+  std::vector<robot::CollisionCapsule> capsules;
   for (int link = -1; link < static_cast<int>(arm.joints.size()); ++link) {
     const std::vector<robot::LinkSolid>& solids = arm.LinkOf(link).solids;
     if (solids.empty()) continue;
-    for (const import::LinkSphere& sphere : import::CoverLink(solids, cover_mm / 1000)) {
-      details->spheres.push_back({link, sphere.p_LS, sphere.radius_m});
-    }
-    robot::CollisionCapsule capsule = import::CapsuleAround(solids);
-    capsule.link = link;
-    details->capsules.push_back(capsule);
+    capsules.push_back(import::CapsuleAround(solids));
+    capsules.back().link = link;
   }
-  if (details->capsules.size() > robot::RobotModel::kMaxCapsules) details->capsules.clear();
+  if (capsules.size() > robot::RobotModel::kMaxCapsules) capsules.clear();
+  return capsules;
 }
 
 // Of the joints that move; those that mimic them are driven through them.
@@ -83,6 +81,11 @@ void SetArmature(const Eigen::VectorXd& armature, robot::ArmDescription* arm) {
 void ImportRobot(const RobotImport& request) {
   import::ArmChoices choices = request.choices;
   choices.name = NameOf(request.out);
+  std::error_code error;
+  if (!request.overwrite && fs::exists(fs::path(request.out) / "robot.yaml", error)) {
+    throw InputError("--out",
+                     "'" + request.out + "' holds a robot already; --overwrite replaces it");
+  }
   import::ImportedArm imported = import::ArmOfTree(ReadTree(request.file, choices), choices);
   robot::ArmDescription& arm = imported.arm;
   for (const std::string& note : imported.notes) Print("{}\n", note);
@@ -95,7 +98,7 @@ void ImportRobot(const RobotImport& request) {
       *model, arm,
       {import::SampleConfigurations(arm, kConfigurations), import::HomeCandidates(arm),
        request.bandwidth_rad_s, request.armature_share});
-  if (!survey.home) {
+  if (survey.free.empty()) {
     throw InputError(request.file,
                      "it touches itself wherever it was put; are its collisions right?");
   }
@@ -106,14 +109,22 @@ void ImportRobot(const RobotImport& request) {
 
   SetArmature(survey.armature, &arm);
   import::RobotDetails details;
-  AddCovers(arm, request.cover_mm, &details);
+  details.spheres = import::CoverArm(arm, request.spheres);
+  details.capsules = CapsulesOf(arm);
   if (details.capsules.empty()) {
     Print(
         "more than {} links can touch: no capsules are written, by which it would be supervised\n",
         robot::RobotModel::kMaxCapsules);
   }
-  details.mount_spheres = import::MountSpheres(arm, details.spheres);
-  details.home = *survey.home;
+  const std::vector<int> mount = import::MountSpheres(arm, details.spheres);
+  details.home = import::ChooseHome(arm, details.spheres, mount, survey.sometimes, survey.free);
+  details.mount_spheres = import::WithSpheresBelow(arm, details.spheres, mount, details.home);
+  if (const std::size_t more = details.mount_spheres.size() - mount.size(); more > 0) {
+    Print(
+        "{} spheres of what moves reach below the base wherever it was put: they count as "
+        "mounted\n",
+        more);
+  }
   details.self_collision =
       import::SeparablePairs(arm, details.spheres, survey.sometimes, details.home);
   details.stiffness = survey.stiffness;

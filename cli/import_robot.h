@@ -3,6 +3,7 @@
 #include <string>
 
 #include "sidestep/import/arm_choices.h"
+#include "sidestep/import/link_spheres.h"
 
 namespace sidestep::cli {
 
@@ -11,7 +12,8 @@ struct RobotImport {
   std::string file;  ///< URDF, or MJCF if its name ends in .xml
   std::string out;   ///< the robot's folder
   import::ArmChoices choices;
-  double cover_mm = 20;
+  bool overwrite = false;  ///< a robot that is there
+  import::SphereRequest spheres;
   double bandwidth_rad_s = 50;
   double armature_share = 0.1;
 };

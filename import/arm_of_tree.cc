@@ -35,7 +35,7 @@ class Maker {
       const int a = NumberOf(NameOfLink(first)), b = NumberOf(NameOfLink(second));
       if (a != b) arm_.without_contact.push_back({std::min(a, b), std::max(a, b)});
     }
-    if (arm_.limits.size() > 16) {
+    if (arm_.limits.size() > robot::RobotModel::kMaxJoints) {
       throw InputError(tree_.file,
                        std::to_string(arm_.limits.size()) +
                            " joints move, at most 16 may; choose a --tip or --fix some");
@@ -47,6 +47,7 @@ class Maker {
                        "none of its links has a collision; --visuals-as-collisions "
                        "takes what is drawn");
     }
+    CheckSize();
     CheckWeights();
     Tell();
     return std::move(imported_);
@@ -162,6 +163,36 @@ class Maker {
       limits.jerk_max = limits.a_max / (kJerkRamp * *choices_.ramp_s);
     }
     return limits;
+  }
+
+  // What robot.yaml and MJCF hold at most.
+  void CheckSize() const {
+    constexpr std::size_t kMostJoints = 128, kMostSolids = 1000;
+    constexpr int kDeepest = 90;
+    const auto fail = [this](const std::string& what, int most) {
+      throw InputError(tree_.file, what + ", at most " + std::to_string(most) +
+                                       " may: choose a --base further on");
+    };
+    if (arm_.joints.size() > kMostJoints) {
+      fail(std::to_string(arm_.joints.size()) + " joints are below '" + choice_.base + "'",
+           kMostJoints);
+    }
+    std::size_t solids = 0;
+    for (const robot::ArmLink& link : arm_.links) solids += link.solids.size();
+    if (solids > kMostSolids) {
+      fail(std::to_string(solids) + " solids are below '" + choice_.base + "'", kMostSolids);
+    }
+    std::vector<int> depths;
+    for (const robot::Joint& joint : arm_.joints) {
+      const int above = joint.parent < 0 ? 0 : depths[static_cast<std::size_t>(joint.parent)];
+      depths.push_back(above + 1);
+      if (depths.back() > kDeepest) fail("more links hang one below the other", kDeepest);
+    }
+    std::size_t moving = 0;
+    for (const robot::Joint& joint : arm_.joints) moving += joint.coordinate >= 0;
+    if (moving > robot::kMaxRows) {
+      fail(std::to_string(moving) + " joints move, with those that mimic others", robot::kMaxRows);
+    }
   }
 
   // What a joint moves must weigh something, it or what is fixed to it.

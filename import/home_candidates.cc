@@ -10,6 +10,7 @@ namespace sidestep::import {
 namespace {
 
 constexpr int kRandom = 300;
+constexpr double kLow_m = 0.05;  // above the base's plane: hardly more than a planner's margin
 
 int CountBelow(const robot::ArmDescription& arm, const Eigen::VectorXd& q) {
   const std::vector<Pose> links = LinkPosesAt(arm, q);
@@ -18,7 +19,7 @@ int CountBelow(const robot::ArmDescription& arm, const Eigen::VectorXd& q) {
     std::vector<Ball> balls;
     for (const robot::LinkSolid& solid : arm.links[i + 1].solids) AppendBalls(solid, &balls);
     below += std::any_of(balls.begin(), balls.end(), [&](const Ball& ball) {
-      return (links[i] * ball.p_L).z() - ball.radius_m < 0;
+      return (links[i] * ball.p_L).z() - ball.radius_m < kLow_m;
     });
   }
   return below;

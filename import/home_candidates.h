@@ -8,7 +8,7 @@
 namespace sidestep::import {
 
 /// Where an arm may begin: at 0, in the middle of its limits, anywhere within; those first at which
-/// the fewest links reach below the base.
+/// the fewest links are low, or below the base.
 std::vector<Eigen::VectorXd> HomeCandidates(const robot::ArmDescription& arm);
 
 }  // namespace sidestep::import

@@ -3,14 +3,18 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "sidestep/core/input_error.h"
 #include "sidestep/import/convex_hull.h"
 #include "sidestep/import/solid_points.h"
 
 namespace sidestep::import {
 namespace {
 
-constexpr int kMostCells = 64;  // of one solid
+constexpr int kMostCells = 64;       // of one solid
+constexpr double kFinest_m = 0.055;  // edge of a cube; its ball stands out by a third of it
+constexpr double kCoarsest_m = 2;
 
 // Whether a ball is beyond one of the planes around a hull.
 bool IsApart(const robot::HullSolid& hull, const Eigen::Vector3d& p, double radius_m) {
@@ -24,11 +28,11 @@ bool IsApart(const robot::HullSolid& hull, const Eigen::Vector3d& p, double radi
   return false;
 }
 
-void CoverSolid(const robot::LinkSolid& solid, double tolerance_m,
-                std::vector<LinkSphere>* spheres) {
+void CoverSolid(const robot::LinkSolid& solid, double edge_m, int link,
+                std::vector<robot::CollisionSphere>* spheres) {
   if (const auto* const shape = std::get_if<Shape>(&solid.form)) {
     if (const auto* const sphere = std::get_if<Sphere>(shape)) {
-      spheres->push_back({solid.X_LS.translation(), sphere->radius_m});
+      spheres->push_back({link, solid.X_LS.translation(), sphere->radius_m});
       return;
     }
   }
@@ -46,7 +50,6 @@ void CoverSolid(const robot::LinkSolid& solid, double tolerance_m,
     box.extend(p_S + reach);
   }
   const std::optional<robot::HullSolid> hull = has_radius ? std::nullopt : ConvexHullOf(points);
-  double edge_m = tolerance_m / ((std::sqrt(3.0) - 1) / 2);
   Eigen::Vector3i cells;
   while (true) {
     cells =
@@ -62,18 +65,33 @@ void CoverSolid(const robot::LinkSolid& solid, double tolerance_m,
         const Eigen::Vector3d p_S =
             box.min() + size.cwiseProduct(Eigen::Vector3d(x + 0.5, y + 0.5, z + 0.5));
         if (hull && IsApart(*hull, p_S, radius_m)) continue;
-        spheres->push_back({solid.X_LS * p_S, radius_m});
+        spheres->push_back({link, solid.X_LS * p_S, radius_m});
       }
     }
   }
 }
 
+std::vector<robot::CollisionSphere> CoverBy(const robot::ArmDescription& arm, double edge_m) {
+  std::vector<robot::CollisionSphere> spheres;
+  for (int link = -1; link < static_cast<int>(arm.joints.size()); ++link) {
+    for (const robot::LinkSolid& solid : arm.LinkOf(link).solids) {
+      CoverSolid(solid, edge_m, link, &spheres);
+    }
+  }
+  return spheres;
+}
+
 }  // namespace
 
-std::vector<LinkSphere> CoverLink(const std::vector<robot::LinkSolid>& solids, double tolerance_m) {
-  std::vector<LinkSphere> spheres;
-  for (const robot::LinkSolid& solid : solids) CoverSolid(solid, tolerance_m, &spheres);
-  return spheres;
+std::vector<robot::CollisionSphere> CoverArm(const robot::ArmDescription& arm,
+                                             const SphereRequest& request) {
+  const auto most = static_cast<std::size_t>(request.num_spheres);
+  for (double edge_m = kFinest_m; edge_m < kCoarsest_m; edge_m *= 1.1) {
+    std::vector<robot::CollisionSphere> spheres = CoverBy(arm, edge_m);
+    if (most == 0 || spheres.size() <= most) return spheres;
+  }
+  throw InputError("--spheres", "are too few: there are " +
+                                    std::to_string(CoverBy(arm, kCoarsest_m).size()) + " solids");
 }
 
 }  // namespace sidestep::import

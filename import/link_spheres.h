@@ -1,19 +1,22 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
 
 #include "sidestep/robot/arm_description.h"
+#include "sidestep/robot/robot_model.h"
 
 namespace sidestep::import {
 
-struct LinkSphere {
-  Eigen::Vector3d p_LS;
-  double radius_m;
+/// What an arm's collision spheres are to be like.
+struct SphereRequest {
+  double cover_m = 0;   ///< no point of a solid stands out of its link's spheres further
+  int num_spheres = 0;  ///< of all links together, at most; 0: as many as it takes
 };
 
-/// Spheres that hold all solids of a link, and stick out of them by about `tolerance_m` at most,
-/// more only where that would take too many: those around the cubes of a coarse grid.
-std::vector<LinkSphere> CoverLink(const std::vector<robot::LinkSolid>& solids, double tolerance_m);
+/// Collision spheres of an arm, link by link. These hold all that can touch: those around the cubes
+/// of a grid, as fine as `num_spheres` allows.
+/// @throws InputError where they would be more than was asked for.
+std::vector<robot::CollisionSphere> CoverArm(const robot::ArmDescription& arm,
+                                             const SphereRequest& request);
 
 }  // namespace sidestep::import

@@ -83,21 +83,29 @@ void Collect(const aiScene& scene, const aiNode& node, const Eigen::Affine3d& X_
   }
 }
 
-// Vertices at one place are one vertex.
+// Vertices at one place are one vertex; a place is a millionth of the mesh wide, for files round.
 TriangleMesh Joined(const Soup& soup) {
+  using Place = Eigen::Matrix<std::int64_t, 3, 1>;
   struct Hash {
-    std::size_t operator()(const Eigen::Vector3d& p) const {
+    std::size_t operator()(const Place& place) const {
       std::size_t hash = 0;
-      for (int i = 0; i < 3; ++i) hash = hash * 1000003 + std::hash<double>()(p(i) + 0.0);
+      for (const std::int64_t i : place) hash = hash * 1000003 + std::hash<std::int64_t>()(i);
       return hash;
     }
   };
-  std::unordered_map<Eigen::Vector3d, int, Hash> places;
+  Eigen::Vector3d low = soup.vertices.front(), high = low;
+  for (const Eigen::Vector3d& p : soup.vertices) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const double width = std::max(1e-6 * (high - low).maxCoeff(), 1e-300);
+  std::unordered_map<Place, int, Hash> places;
   places.reserve(soup.vertices.size());
   std::vector<int> index;
   std::vector<Eigen::Vector3d> distinct;
   for (const Eigen::Vector3d& p : soup.vertices) {
-    const auto [place, is_new] = places.emplace(p, static_cast<int>(distinct.size()));
+    const Place at = ((p - low) / width).array().round().matrix().cast<std::int64_t>();
+    const auto [place, is_new] = places.emplace(at, static_cast<int>(distinct.size()));
     if (is_new) distinct.push_back(p);
     index.push_back(place->second);
   }

@@ -15,7 +15,8 @@ Pose PoseIn(const std::vector<Pose>& links, int link) {
   return link < 0 ? Pose() : links[static_cast<std::size_t>(link)];
 }
 
-// Where the robot stands: its base's frame, or the underside of what is fixed to it.
+// Where the robot stands: at its base's frame, or at the underside of what is fixed to it, if that
+// is a foot and not the rounded edge of a mesh.
 double GroundOf(const robot::ArmDescription& arm, const std::vector<int>& fixed) {
   const std::vector<Pose> links =
       LinkPosesAt(arm, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(arm.limits.size())));
@@ -27,7 +28,7 @@ double GroundOf(const robot::ArmDescription& arm, const std::vector<int>& fixed)
       ground = std::min(ground, (PoseIn(links, link) * ball.p_L).z() - ball.radius_m);
     }
   }
-  return ground;
+  return ground < -kAbove_m ? ground : 0;
 }
 
 }  // namespace
@@ -50,6 +51,43 @@ std::vector<int> MountSpheres(const robot::ArmDescription& arm,
     if (is_fixed || always_low[s]) mount.push_back(static_cast<int>(s));
   }
   return mount;
+}
+
+Eigen::VectorXd ChooseHome(const robot::ArmDescription& arm,
+                           const std::vector<robot::CollisionSphere>& spheres,
+                           const std::vector<int>& mount, const LinkPairs& pairs,
+                           const std::vector<Eigen::VectorXd>& configurations) {
+  const double ground_m = GroundOf(arm, FixedLinks(arm)) + kAbove_m;
+  Eigen::VectorXd best = configurations.front();
+  std::size_t fewest = spheres.size() + pairs.size() + 1;
+  for (const Eigen::VectorXd& q : configurations) {
+    const std::vector<Pose> links = LinkPosesAt(arm, q);
+    std::size_t taken = pairs.size() - SeparablePairs(arm, spheres, pairs, q).size();
+    for (std::size_t s = 0; s < spheres.size(); ++s) {
+      const bool stands = std::find(mount.begin(), mount.end(), static_cast<int>(s)) != mount.end();
+      const double z = (PoseIn(links, spheres[s].link) * spheres[s].p_LS).z();
+      taken += !stands && z - spheres[s].radius_m < ground_m;
+    }
+    if (taken >= fewest) continue;
+    fewest = taken;
+    best = q;
+  }
+  return best;
+}
+
+std::vector<int> WithSpheresBelow(const robot::ArmDescription& arm,
+                                  const std::vector<robot::CollisionSphere>& spheres,
+                                  const std::vector<int>& mount, const Eigen::VectorXd& home) {
+  constexpr double kRounding_m = 1e-4;  // of what is written
+  const double ground_m = GroundOf(arm, FixedLinks(arm)) + kRounding_m;
+  const std::vector<Pose> links = LinkPosesAt(arm, home);
+  std::vector<int> all;
+  for (std::size_t s = 0; s < spheres.size(); ++s) {
+    const double z = (PoseIn(links, spheres[s].link) * spheres[s].p_LS).z();
+    const bool stands = std::find(mount.begin(), mount.end(), static_cast<int>(s)) != mount.end();
+    if (stands || z - spheres[s].radius_m < ground_m) all.push_back(static_cast<int>(s));
+  }
+  return all;
 }
 
 LinkPairs SeparablePairs(const robot::ArmDescription& arm,

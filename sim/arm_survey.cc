@@ -166,9 +166,9 @@ ArmSurvey SurveyArm(const mjModel& model, const robot::ArmDescription& arm,
   for (const VectorXd& q : settings.candidates) {
     survey.MoveTo(q);
     const std::set<Pair> touching = survey.Touching();
-    if (!std::includes(always.begin(), always.end(), touching.begin(), touching.end())) continue;
-    found.home = q;
-    break;
+    if (std::includes(always.begin(), always.end(), touching.begin(), touching.end())) {
+      found.free.push_back(q);
+    }
   }
   FindGains(arm, std::move(inertias), settings, &found);
   return found;

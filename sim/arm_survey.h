@@ -3,7 +3,6 @@
 #include <mujoco/mujoco.h>
 
 #include <Eigen/Core>
-#include <optional>
 #include <vector>
 
 #include "sidestep/robot/arm_description.h"
@@ -16,7 +15,7 @@ struct ArmSurvey {
   /// Pairs of links that touch each other, as MuJoCo sees it, at nearly all configurations, or at
   /// some. MuJoCo looks for no contact between links that one joint joins.
   std::vector<robot::LinkPair> always, sometimes;
-  std::optional<Eigen::VectorXd> home;  ///< the first of the candidates without self-contact
+  std::vector<Eigen::VectorXd> free;  ///< the candidates without self-contact, in their order
   /// Of each coordinate, the share that was asked for of the greatest inertia that it moves alone:
   /// what the rotor of its motor may count behind a gear, of which a URDF says nothing; 0 for one
   /// that has an armature.
@@ -30,7 +29,7 @@ struct ArmSurvey {
 
 struct SurveySettings {
   std::vector<Eigen::VectorXd> configurations;  ///< where it is tried
-  std::vector<Eigen::VectorXd> candidates;      ///< for `home`, the best first
+  std::vector<Eigen::VectorXd> candidates;      ///< for where it may begin
   double bandwidth_rad_s = 50;
   double armature_share = 0.1;
 };

@@ -84,8 +84,7 @@ void CopyChildren(const XMLElement& from, XMLElement* to) {
 // by `childclass`.)
 bool TakesClass(const std::string& section, const std::string& tag) {
   if (section == "actuator" || section == "tendon" || section == "equality") return true;
-  return (section == "asset" && tag == "material") ||
-         (section == "contact" && tag == "pair");
+  return (section == "asset" && tag == "material") || (section == "contact" && tag == "pair");
 }
 
 void MergeRobot(const scenarios::Scenario& scenario, const std::string& path, XMLElement* world) {

@@ -269,5 +269,116 @@ INSTANTIATE_TEST_SUITE_P(
              "[0.8, -0.7, 0.9, 0.3, 0.5, 0]"}),
     [](const auto& test) { return std::string(test.param.name); });
 
+struct DeleteModel {
+  void operator()(mjModel* model) const { mj_deleteModel(model); }
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
+using ModelPtr = std::unique_ptr<mjModel, DeleteModel>;
+using DataPtr = std::unique_ptr<mjData, DeleteModel>;
+
+const fs::path kClasses = kSource / "tests/data/mjcf/classes_and_meshes.xml";
+
+class ImportMjcf : public ::testing::Test {
+ protected:
+  Finished Sidestep(const fs::path& file, const std::vector<std::string>& options) const {
+    std::vector<std::string> command = {SIDESTEP_PROGRAM, "import", file.string(), "--out",
+                                        (folder_.path() / "arm").string()};
+    command.insert(command.end(), options.begin(), options.end());
+    return RunProgram(command);
+  }
+  // The test's model with a text replaced, in a folder of its own.
+  fs::path Altered(const std::string& old_text, const std::string& new_text) const {
+    fs::copy(kClasses.parent_path() / "assets", folder_.path() / "assets");
+    std::string text = BytesOf(kClasses);
+    text.replace(text.find(old_text), old_text.size(), new_text);
+    std::ofstream(folder_.path() / "model.xml") << text;
+    return folder_.path() / "model.xml";
+  }
+  const TemporaryFolder folder_;
+};
+
+// Links stand where the model's bodies do, those that a joint moves at its anchor.
+TEST_F(ImportMjcf, KeepsTheKinematicsOfTheModel) {
+  const Finished finished = Sidestep(kClasses, {"--tip", "tcp", "--velocity", "2"});
+  ASSERT_EQ(finished.exit_code, 0) << finished.err;
+  EXPECT_THAT(finished.out, testing::HasSubstr("left out, for they stand beside the arm: table"));
+  EXPECT_THAT(finished.out, testing::HasSubstr("<option>, <statistic>, <keyframe>"));
+  const robot::RobotModel robot = robot::RobotModel::Load(folder_.path().string(), "arm", Pose());
+  ASSERT_EQ(robot.joint_names(), (std::vector<std::string>{"turn", "lift", "bend", "roll"}));
+  EXPECT_EQ(robot.limits()[0].torque_max, 87);
+  EXPECT_EQ(robot.limits()[3].torque_max, 12);
+
+  // What this MuJoCo reads of it: without the option it does not know.
+  const std::string text = BytesOf(Altered("integrator=\"implicitfast\"", ""));
+  char error[1000] = "";
+  const ModelPtr model(
+      mj_loadXML((folder_.path() / "model.xml").c_str(), nullptr, error, sizeof error));
+  ASSERT_NE(model, nullptr) << error;
+  const DataPtr data(mj_makeData(model.get()));
+  RandomStream random(1, "q");
+  for (int trial = 0; trial < 50; ++trial) {
+    Eigen::VectorXd q(4);
+    for (int i = 0; i < 4; ++i) {
+      q(i) = random.Uniform(-2, 2);
+      const int id = mj_name2id(model.get(), mjOBJ_JOINT,
+                                robot.joint_names()[static_cast<std::size_t>(i)].c_str());
+      data->qpos[model->jnt_qposadr[id]] = q(i);
+    }
+    mj_kinematics(model.get(), data.get());
+    const int base = mj_name2id(model.get(), mjOBJ_BODY, "base");
+    const Vector3d p_WB = Eigen::Map<const Vector3d>(data->xpos + 3 * base);
+    const std::vector<Pose> links = robot.ComputeLinkPoses(q);
+    for (std::size_t i = 0; i < links.size(); ++i) {
+      const int body = mj_name2id(model.get(), mjOBJ_BODY, robot.joints()[i].link.c_str());
+      ASSERT_GE(body, 0);
+      Vector3d p = Eigen::Map<const Vector3d>(data->xpos + 3 * body);
+      if (model->body_jntnum[body] > 0) {
+        p = Eigen::Map<const Vector3d>(data->xanchor + 3 * model->body_jntadr[body]);
+      }
+      EXPECT_LT((links[i].translation() - (p - p_WB)).norm(), 1e-9) << robot.joints()[i].link;
+      const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(data->xmat + 9 * body);
+      EXPECT_LT((links[i].rotation().toRotationMatrix() - R).norm(), 1e-9)
+          << robot.joints()[i].link;
+    }
+  }
+}
+
+TEST_F(ImportMjcf, KeepsAFingerThatMimicsAnother) {
+  const Finished finished = Sidestep(kClasses, {"--tip", "left_finger", "--velocity", "2"});
+  ASSERT_EQ(finished.exit_code, 0) << finished.err;
+  const robot::RobotModel robot = robot::RobotModel::Load(folder_.path().string(), "arm", Pose());
+  EXPECT_EQ(robot.num_joints(), 5);
+}
+
+TEST_F(ImportMjcf, MakesNoMoreSpheresThanItMay) {
+  for (const std::string most : {"20", "60"}) {
+    const Finished finished =
+        Sidestep(kClasses, {"--tip", "tcp", "--velocity", "2", "--spheres", most, "--overwrite"});
+    ASSERT_EQ(finished.exit_code, 0) << finished.err;
+    const robot::RobotModel robot = robot::RobotModel::Load(folder_.path().string(), "arm", Pose());
+    EXPECT_LE(robot.num_spheres(), std::stoi(most));
+  }
+  EXPECT_THAT(Sidestep(kClasses, {"--tip", "tcp", "--velocity", "2", "--spheres", "5"}).err,
+              testing::HasSubstr("--out: "));  // it is there
+}
+
+TEST_F(ImportMjcf, SaysWhatNeedsANewerMujoco) {
+  const Finished finished =
+      Sidestep(Altered("<body name=\"upper\"", "<body gravcomp=\"1\" name=\"upper\""),
+               {"--tip", "tcp", "--velocity", "2"});
+  EXPECT_EQ(finished.exit_code, 2);
+  EXPECT_THAT(finished.err, testing::HasSubstr("model.xml:42: body: "));
+  EXPECT_THAT(finished.err, testing::HasSubstr("gravcomp"));
+  EXPECT_THAT(finished.err, testing::HasSubstr("it needs a newer MuJoCo than 2.2.2"));
+}
+
+TEST_F(ImportMjcf, RefusesWhatIsNoArm) {
+  const Finished finished =
+      Sidestep(Altered("<joint name=\"bend\"", "<joint name=\"more\"/><joint name=\"bend\""),
+               {"--tip", "tcp", "--velocity", "2"});
+  EXPECT_EQ(finished.exit_code, 2);
+  EXPECT_THAT(finished.err, testing::HasSubstr("model.xml:46: body 'lower': has several joints"));
+}
+
 }  // namespace
 }  // namespace sidestep

@@ -79,15 +79,19 @@ TEST(LinkCover, HoldsEverySolid) {
     if (trial % 2 == 0) solids.erase(solids.begin() + 1, solids.begin() + 4 - trial % 3);
     if (trial % 5 == 0) solids.resize(1);
     const robot::CollisionCapsule capsule = CapsuleAround(solids);
-    const std::vector<LinkSphere> spheres = CoverLink(solids, 0.02);
+    robot::ArmDescription arm;
+    arm.links.resize(1);
+    arm.links[0].solids = solids;
+    const std::vector<robot::CollisionSphere> spheres = CoverArm(arm, {0.005, 0});
     EXPECT_GT((capsule.p_LB - capsule.p_LA).norm(), 0);
     for (const robot::LinkSolid& solid : solids) {
       for (int i = 0; i < 200; ++i) {
         const Vector3d p = DrawPoint(solid, &random);
         EXPECT_LT(DistanceTo(capsule, p), 1e-9);
-        const bool is_held = std::any_of(spheres.begin(), spheres.end(), [&](const LinkSphere& s) {
-          return (p - s.p_LS).norm() <= s.radius_m + 1e-9;
-        });
+        const bool is_held =
+            std::any_of(spheres.begin(), spheres.end(), [&](const robot::CollisionSphere& s) {
+              return (p - s.p_LS).norm() <= s.radius_m + 0.005;
+            });
         EXPECT_TRUE(is_held);
       }
     }

@@ -29,10 +29,12 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMajorMatrixXd = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// The files of all robots: those that are shipped, their variants, and the example on a rail.
+// The files of all robots: those that are shipped, their variants, the example on a rail, and one
+// with meshes and a joint that mimics another.
 std::vector<std::string> Files() {
   const std::string models = SIDESTEP_SOURCE_DIR "/models";
-  std::vector<std::string> files = {SIDESTEP_SOURCE_DIR "/examples/robot/panda_rail/robot.yaml"};
+  std::vector<std::string> files = {SIDESTEP_SOURCE_DIR "/examples/robot/panda_rail/robot.yaml",
+                                    SIDESTEP_SOURCE_DIR "/tests/sim/models/clamp/robot.yaml"};
   for (const std::string& name : RobotModel::ListNames(models)) {
     files.push_back(models + "/" + name + "/robot.yaml");
     for (const std::string& variant : VariantNames(models, name)) {
@@ -65,8 +67,12 @@ class EveryModel : public ::testing::TestWithParam<std::string> {
 
   // Puts the simulated arm at q.
   void MoveTo(const VectorXd& q) {
-    ASSERT_EQ(model_->nq, q.size());
-    std::copy(q.begin(), q.end(), data_->qpos);
+    for (const Joint& joint : robot_.joints()) {
+      if (joint.coordinate < 0) continue;
+      const int id = mj_name2id(model_.get(), mjOBJ_JOINT, joint.name.c_str());
+      ASSERT_GE(id, 0) << joint.name;
+      data_->qpos[model_->jnt_qposadr[id]] = joint.multiplier * q(joint.coordinate) + joint.offset;
+    }
     mj_kinematics(model_.get(), data_.get());
     mj_comPos(model_.get(), data_.get());
   }
@@ -113,6 +119,17 @@ class EveryModel : public ::testing::TestWithParam<std::string> {
             Eigen::Map<const RowMajor3>(data_->site_xmat + 9 * site)};
   }
 
+  // How each number of a configuration moves the model's joints, those that mimic others too.
+  MatrixXd DofsOf() const {
+    MatrixXd dofs = MatrixXd::Zero(model_->nv, robot_.num_joints());
+    for (const Joint& joint : robot_.joints()) {
+      if (joint.coordinate < 0) continue;
+      const int id = mj_name2id(model_.get(), mjOBJ_JOINT, joint.name.c_str());
+      dofs(model_->jnt_dofadr[id], joint.coordinate) = joint.multiplier;
+    }
+    return dofs;
+  }
+
   std::string BodyName(int geom) const {
     return mj_id2name(model_.get(), mjOBJ_BODY, model_->geom_bodyid[geom]);
   }
@@ -122,14 +139,14 @@ class EveryModel : public ::testing::TestWithParam<std::string> {
     const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(data_->geom_xmat +
                                                                            9 * geom);
     const Eigen::Map<const Eigen::Vector3d> p(data_->geom_xpos + 3 * geom);
-    return (R * SampleSurface(ShapeOf(*model_, geom))).colwise() + p;
+    return (R * SampleGeom(*model_, geom)).colwise() + p;
   }
 
   double SignedDistanceTo(int geom, const Eigen::Vector3d& p_WQ) const {
     const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(data_->geom_xmat +
                                                                            9 * geom);
     const Eigen::Map<const Eigen::Vector3d> p(data_->geom_xpos + 3 * geom);
-    return SignedDistance(ShapeOf(*model_, geom), R.transpose() * (p_WQ - p));
+    return DistanceToGeom(*model_, geom, R.transpose() * (p_WQ - p));
   }
 
   struct DeleteModel {
@@ -165,8 +182,9 @@ TEST_P(EveryModel, HasSphereJacobiansEqualToMujocosAndToDifferences) {
     for (int s = 0; s < robot_.num_spheres(); ++s) {
       const int link = robot_.spheres()[static_cast<std::size_t>(s)].link;
       const int body = link < 0 ? 0 : FrameOf(link).body;
-      RowMajorMatrixXd J(3, n);
-      mj_jac(model_.get(), data_.get(), J.data(), nullptr, spheres.p_WS.col(s).data(), body);
+      RowMajorMatrixXd J_dofs(3, model_->nv);
+      mj_jac(model_.get(), data_.get(), J_dofs.data(), nullptr, spheres.p_WS.col(s).data(), body);
+      const MatrixXd J = J_dofs * DofsOf();
       EXPECT_LE((spheres.Jq.middleRows(3 * s, 3) - J).cwiseAbs().maxCoeff(), 1e-12) << s;
     }
     const double h = 1e-5;
@@ -181,7 +199,7 @@ TEST_P(EveryModel, HasSphereJacobiansEqualToMujocosAndToDifferences) {
 }
 
 TEST_P(EveryModel, HasTheJointsLimitsAndMotorsOfItsMjcf) {
-  ASSERT_EQ(model_->njnt, robot_.num_joints());
+  ASSERT_EQ(model_->njnt, robot_.num_joints() + model_->neq);  // those that mimic others
   ASSERT_EQ(model_->nu, robot_.num_joints());
   for (int j = 0; j < robot_.num_joints(); ++j) {
     const JointLimits& limits = robot_.limits()[static_cast<std::size_t>(j)];
@@ -341,8 +359,9 @@ TEST_P(EveryModel, IsHeldStablyAndWellDampedByItsGains) {
   for (const VectorXd& q : Configurations(200)) {
     ASSERT_NO_FATAL_FAILURE(MoveTo(q));
     mj_crb(model_.get(), data_.get());
-    RowMajorMatrixXd M(n, n);
-    mj_fullM(model_.get(), M.data(), data_->qM);
+    RowMajorMatrixXd M_dofs(model_->nv, model_->nv);
+    mj_fullM(model_.get(), M_dofs.data(), data_->qM);
+    const MatrixXd M = DofsOf().transpose() * M_dofs * DofsOf();
     const MatrixXd K = M.ldlt().solve(MatrixXd(robot_.stiffness().asDiagonal()));
     const MatrixXd D = M.ldlt().solve(MatrixXd(robot_.damping().asDiagonal()));
     const MatrixXd I = MatrixXd::Identity(n, n);

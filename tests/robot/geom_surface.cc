@@ -1,5 +1,7 @@
 #include "tests/robot/geom_surface.h"
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -79,9 +81,60 @@ struct Sampler {
   }
 };
 
+// The corners of each triangle of a mesh's hull: see mesh_graph in mjmodel.h.
+std::vector<Eigen::Matrix3d> HullFaces(const mjModel& model, int mesh) {
+  const int* const graph = model.mesh_graph + model.mesh_graphadr[mesh];
+  const int num_vertices = graph[0], num_faces = graph[1];
+  const int* const corners = graph + 2 + 3 * num_vertices + 3 * num_faces;
+  const float* const vertices = model.mesh_vert + 3 * model.mesh_vertadr[mesh];
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Matrix3d> faces(static_cast<std::size_t>(num_faces));
+  for (int i = 0; i < 3 * num_faces; ++i) {
+    const Eigen::Vector3d corner =
+        Eigen::Map<const Eigen::Vector3f>(vertices + 3 * corners[i]).cast<double>();
+    faces[static_cast<std::size_t>(i / 3)].col(i % 3) = corner;
+    middle += corner / (3 * num_faces);
+  }
+  for (Eigen::Matrix3d& face : faces) {
+    const Eigen::Vector3d normal = (face.col(1) - face.col(0)).cross(face.col(2) - face.col(0));
+    if (normal.dot(face.col(0) - middle) < 0) face.col(1).swap(face.col(2));
+  }
+  return faces;
+}
+
 }  // namespace
 
 Eigen::Matrix3Xd SampleSurface(const Shape& shape) { return std::visit(Sampler{}, shape); }
+
+Eigen::Matrix3Xd SampleGeom(const mjModel& model, int geom) {
+  if (model.geom_type[geom] != mjGEOM_MESH) return SampleSurface(ShapeOf(model, geom));
+  constexpr int kSides = 12;
+  std::vector<Eigen::Vector3d> points;
+  for (const Eigen::Matrix3d& face : HullFaces(model, model.geom_dataid[geom])) {
+    for (int i = 0; i <= kSides; ++i) {
+      for (int k = 0; i + k <= kSides; ++k) {
+        points.push_back(face * Eigen::Vector3d(i, k, kSides - i - k) / kSides);
+      }
+    }
+  }
+  Eigen::Matrix3Xd columns(3, static_cast<Eigen::Index>(points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    columns.col(static_cast<Eigen::Index>(i)) = points[i];
+  }
+  return columns;
+}
+
+double DistanceToGeom(const mjModel& model, int geom, const Eigen::Vector3d& p_GQ) {
+  if (model.geom_type[geom] != mjGEOM_MESH) return SignedDistance(ShapeOf(model, geom), p_GQ);
+  double highest = -1e9;
+  for (const Eigen::Matrix3d& face : HullFaces(model, model.geom_dataid[geom])) {
+    const Eigen::Vector3d across = (face.col(1) - face.col(0)).cross(face.col(2) - face.col(0));
+    if (across.norm() > 0) {
+      highest = std::max(highest, across.normalized().dot(p_GQ - face.col(0)));
+    }
+  }
+  return highest;
+}
 
 Shape ShapeOf(const mjModel& model, int geom) {
   const mjtNum* const size = model.geom_size + 3 * geom;
