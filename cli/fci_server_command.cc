@@ -12,12 +12,15 @@
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/provenance.h"
+#include "sidestep/cli/sensors.h"
 #include "sidestep/cli/server_trace.h"
 #include "sidestep/cli/stop_signals.h"
 #include "sidestep/cli/wiring.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/number_text.h"
+#include "sidestep/render/rendered_camera.h"
 #include "sidestep/sim/fci/fault_script.h"
+#include "sidestep/sim/fci/frame_server.h"
 #include "sidestep/sim/fci/panda_world.h"
 #include "sidestep/sim/fci/server.h"
 #include "sidestep/sim/simulated_truth.h"
@@ -125,6 +128,22 @@ void BeginTrace(const ServerCommand& options, int number, scenarios::Scenario sc
                 Identify(scenario, paths));
 }
 
+// Shows what the scenario's camera sees, if it has one; a picture takes longer than a tick of the
+// wall.
+std::optional<sim::fci::FrameServer> CameraOf(const ServerCommand& options,
+                                              const scenarios::Scenario& scenario,
+                                              const sim::World& world) {
+  if (scenario.sensor.name != kTagImages || options.clock == "wall") return std::nullopt;
+  sim::CheckSensorSettings(scenario, kTagImages);
+  try {
+    return std::make_optional<sim::fci::FrameServer>(options.server.address, world, [&] {
+      return std::make_unique<render::RenderedCamera>(scenario, world);
+    });
+  } catch (const robot::fci::LinkError& error) {
+    throw InputError("--address", error.what());
+  }
+}
+
 int Serve(ServerCommand options) {
   const DataPaths paths = FindDataPaths();
   const sim::fci::FaultScript faults =
@@ -165,8 +184,10 @@ int Serve(ServerCommand options) {
     throw InputError("--address", error.what());
   }
   server->TellWith(tell);
-  Print("simulated Panda at {}, FCI version {}, {}; Ctrl-C ends it\n", options.server.address,
-        faults.version, options.clock);
+  std::optional<sim::fci::FrameServer> frames = CameraOf(options, scenario, *world);
+  if (frames) server->Show(&*frames);
+  Print("simulated Panda at {}, FCI version {}, {}{}; Ctrl-C ends it\n", options.server.address,
+        faults.version, options.clock, frames ? ", with a camera" : "");
   FinishOutput();
   const StopSignals signals;
   server->Run([&] { return signals.count() > 0; });
@@ -212,7 +233,9 @@ void AddFciServerCommand(CommandLine& line) {
       "Speaks protocol version 5, that of libfranka 0.9: joint positions, joint velocities and\n"
       "torques. The world begins with each client and stands still until the first command of its\n"
       "first motion, and while the arm rests; times count from there. docs/hardware.md tells what\n"
-      "is checked, and by which source.");
+      "is checked, and by which source. In lock-step, with a scenario that is seen by tag_images, "
+      "its\n"
+      "camera is shown to `sidestep hardware run --camera server`.");
   server->callback([&line, options] { line.exit_code = Serve(*options); });
 }
 

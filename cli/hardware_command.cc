@@ -11,6 +11,8 @@
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/hardware_world.h"
+#include "sidestep/cli/look_around.h"
+#include "sidestep/cli/number_range.h"
 #include "sidestep/cli/operator_log.h"
 #include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/panda_connection.h"
@@ -20,6 +22,7 @@
 #include "sidestep/cli/scenario_options.h"
 #include "sidestep/cli/sensors.h"
 #include "sidestep/cli/stop_signals.h"
+#include "sidestep/cli/tag_camera.h"
 #include "sidestep/cli/tether.h"
 #include "sidestep/cli/wiring.h"
 #include "sidestep/core/input_error.h"
@@ -37,7 +40,8 @@ struct HardwareOptions {
   std::string robot = kDefaultAddress;
   std::string clock = "wall";
   std::string out;
-  std::string calibration;
+  std::string calibration, camera = "virtual";
+  double seconds = 0;  // of a dry run
   bool json = false, dry_run = false, yes = false;
 };
 
@@ -74,13 +78,48 @@ Problem LoadForHardware(const HardwareOptions& options, const DataPaths& paths) 
   return problem;
 }
 
+CameraUse CameraUseOf(const HardwareOptions& options) {
+  CameraUse use = {ParseCamera(options.camera), std::nullopt, options.robot, {}};
+  if (!options.calibration.empty()) {
+    use.calibration = hardware::ReadCalibration(options.calibration);
+  }
+  return use;
+}
+
+// What is around the robot, and how it is seen.
+HardwareSite SiteOf(const HardwareOptions& options, const scenarios::Scenario& scenario) {
+  const CameraUse use = CameraUseOf(options);
+  if (use.choice.kind == CameraKind::kVirtual && !use.calibration) {
+    return {options.robot, &MakeSensor, ""};
+  }
+  ReadyCamera camera = OpenTagCamera(scenario, use, TodayUtc());
+  return {options.robot, std::move(camera.make_sensor), camera.description};
+}
+
+// What of a camera and a clock does not go together.
+void CheckCamera(const HardwareOptions& options, bool lockstep) {
+  switch (ParseCamera(options.camera).kind) {
+    case CameraKind::kServer:
+      if (!lockstep) throw InputError("--camera", "the server shows pictures in lock-step alone");
+      return;
+    case CameraKind::kRealSense:
+      if (lockstep) throw InputError("--camera", "a real camera has a clock of its own: wall");
+      return;
+    case CameraKind::kVirtual:
+    case CameraKind::kRecorded:
+      return;
+  }
+}
+
 // Connects, looks, and plans; nothing is sent to the robot.
 int DryRun(const HardwareOptions& options, const Problem& problem, const DataPaths& paths) {
-  for (const auto& [flag, is_given] :
-       {std::pair("--out", !options.out.empty()), std::pair("--json", options.json)}) {
+  const bool has_camera = problem.scenario.sensor.name == kTagImages;
+  for (const auto& [flag, is_given] : {std::pair("--out", !has_camera && !options.out.empty()),
+                                       std::pair("--json", options.json)}) {
     if (is_given) throw InputError(flag, "is of a run: --dry-run leaves no results");
   }
-  const auto driver = ConnectPanda(options.robot);
+  if (!has_camera) SiteOf(options, problem.scenario);  // which has no use for one
+  auto driver = ConnectPanda(options.robot);
   const hardware::RobotSnapshot state = driver->ReadOnce();
   const scenarios::Scenario& scenario = problem.scenario;
   Eigen::VectorXd q(static_cast<Eigen::Index>(state.q.size()));
@@ -91,27 +130,28 @@ int DryRun(const HardwareOptions& options, const Problem& problem, const DataPat
         driver->server_version(), robot::fci::Name(state.mode));
   Print("from the start   {:.4f} rad, allowed 0.02\n",
         (q - scenario.q_start).cwiseAbs().maxCoeff());
-  Print("in simulation, from the start of the task, under the same supervision:\n");
-  const bench::EpisodeResult result =
-      bench::RunEpisode(scenario, problem.robot, SimulatedWorlds(paths));
-  PrintOutcome(result, scenario);
+  if (has_camera) {
+    const Operator person;
+    LookAround(problem, paths,
+               {CameraUseOf(options),
+                options.out.empty() ? "out/" + scenario.name + "/dry_run" : options.out,
+                options.seconds, [&] { return person.WhyStop(); }},
+               std::move(driver));
+  } else {
+    Print("in simulation, from the start of the task, under the same supervision:\n");
+    const bench::EpisodeResult result =
+        bench::RunEpisode(scenario, problem.robot, SimulatedWorlds(paths));
+    PrintOutcome(result, scenario);
+  }
   FinishOutput();
   if (objection) PrintError("hardware run: not ready: {}\n", objection->why);
   if (aside) PrintError("hardware run: not ready: {}\n", *aside);
   return objection || aside ? 1 : 0;
 }
 
-// Sees with a camera from where it was calibrated to stand, if that is given.
-sim::SensorMaker SensorMakerFor(const HardwareOptions& options,
-                                const scenarios::Scenario& scenario) {
-  if (options.calibration.empty()) return &MakeSensor;
-  return CalibratedCamera(scenario, hardware::ReadCalibration(options.calibration), TodayUtc());
-}
-
 int RunOnHardware(const HardwareOptions& options) {
   const DataPaths paths = FindDataPaths();
   Problem problem = LoadForHardware(options, paths);
-  const sim::SensorMaker make_sensor = SensorMakerFor(options, problem.scenario);
   if (options.dry_run) return DryRun(options, problem, paths);
   const bool lockstep = options.clock == "lockstep";
   if (!lockstep && problem.scenario.latency == scenarios::Latency::kNone) {
@@ -120,15 +160,17 @@ int RunOnHardware(const HardwareOptions& options) {
   if (lockstep && !IsLoopback(options.robot)) {
     throw InputError("--clock", "a real robot has a clock of its own: wall");
   }
-  RunFolder folder(options.out.empty() ? "out/" + problem.scenario.name + "/hardware" : options.out,
-                   Identify(problem.scenario, paths));
+  CheckCamera(options, lockstep);
+  const std::string out =
+      options.out.empty() ? "out/" + problem.scenario.name + "/hardware" : options.out;
+  const HardwareSite site = SiteOf(options, problem.scenario);
+  RunFolder folder(out, Identify(problem.scenario, paths));
   const Operator person;
   const bench::WorldFactory worlds =
-      HardwareWorlds(paths, options.robot,
+      HardwareWorlds(paths, site,
                      {.safety = sim::SafetyOf(problem.scenario, problem.robot),
                       .lockstep = lockstep,
-                      .stops_at_once = [&] { return person.WantsItAtOnce(); }},
-                     make_sensor);
+                      .stops_at_once = [&] { return person.WantsItAtOnce(); }});
   bench::EpisodeOptions episode;
   episode.clock = lockstep ? bench::EpisodeClock::kVirtual : bench::EpisodeClock::kRobot;
   episode.why_stop = [&] { return person.WhyStop(); };
@@ -279,8 +321,8 @@ void AddHardwareCommand(CommandLine& line) {
 
   CLI::App* const run = hardware->add_subcommand(
       "run",
-      "Run one episode on a robot; its obstacles are virtual. Ctrl-C once brakes and ends the "
-      "motion, twice stops the robot, three times leaves");
+      "Run one episode on a robot; its obstacles are virtual, or seen by a camera. Ctrl-C once "
+      "brakes and ends the motion, twice stops the robot, three times leaves");
   AddScenarioOptions(*run, options->scenario, KnowsNoFuture());
   run->add_option("--safety", options->scenario.overrides.safety,
                   "Of the robot's supervisor: lab (act; the default), observe, off; the latter two "
@@ -288,12 +330,25 @@ void AddHardwareCommand(CommandLine& line) {
       ->check(CLI::IsMember({"off", "observe", "lab"}));
   AddClock(*run, *options);
   AddRobotOption(*run, *options);
-  run->add_option("--out", options->out, "Folder for the results [out/SCENARIO/hardware]");
+  run->add_option("--out", options->out,
+                  "Folder for the results [out/SCENARIO/hardware, or dry_run]");
   run->add_flag("--json", options->json, "Print result.json instead of the summary");
+  run->add_option(
+         "--camera", options->camera,
+         "Whose pictures tag_images looks at: virtual (drawn of virtual obstacles), server "
+         "(of the simulated robot server's world, in lock-step), recorded:DIR, "
+         "realsense:SERIAL")
+      ->capture_default_str();
   run->add_option("--calibration", options->calibration,
                   "Where the camera of tag_images stands, of `sidestep hardware calibrate`; else "
                   "as the scenario says");
-  run->add_flag("--dry-run", options->dry_run, "Connect, look and plan; send nothing to the robot");
+  run->add_flag("--dry-run", options->dry_run,
+                "Connect, look and plan; send nothing to the robot. With tag_images, leaves the "
+                "pictures, what was seen in them, and a video of that");
+  run->add_option(
+         "--seconds", options->seconds,
+         "How long a dry run with tag_images looks [s] [two horizons; all that is recorded]")
+      ->check(NumberFrom(0.1, 3600.0));
   run->callback([&line, options] { line.exit_code = RunOnHardware(*options); });
 
   CLI::App* const go = hardware->add_subcommand(
@@ -312,6 +367,16 @@ void AddHardwareCommand(CommandLine& line) {
       ->description("Whose obstacles must be further off than the protective distance");
   AddRobotOption(*recover, *options);
   recover->callback([&line, options] { line.exit_code = Recover(*options); });
+
+  auto replay = std::make_shared<std::pair<std::string, std::string>>();  // folder, out
+  CLI::App* const again = hardware->add_subcommand(
+      "replay",
+      "Look at the pictures of a dry run again: the same has to be found in them, to the bit");
+  again->add_option("DIR", replay->first, "Folder of the dry run")->required();
+  again->add_option("--out", replay->second, "Folder for a video of what is found");
+  again->callback([&line, replay] {
+    line.exit_code = LookAgain(FindDataPaths(), replay->first, replay->second) ? 0 : 1;
+  });
 
   AddCalibrate(*hardware, line);
 }

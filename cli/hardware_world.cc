@@ -8,6 +8,7 @@
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/number_text.h"
 #include "sidestep/hardware/readiness.h"
+#include "sidestep/hardware/standing_robot.h"
 #include "sidestep/sim/simulation.h"
 #include "sidestep/sim/world_xml.h"
 
@@ -22,35 +23,50 @@ scenarios::Scenario WithoutRobot(scenarios::Scenario scenario) {
   return scenario;
 }
 
-// The robot is real or plays it; what it is to step aside from is not.
-class VirtualObstacles final : public robot::RobotInterface {
+// The robot is real or plays it; what it is to step aside from is not, unless a camera sees it.
+class Stage final : public robot::RobotInterface {
  public:
-  VirtualObstacles(std::unique_ptr<hardware::PandaRobot> panda, const scenarios::Scenario& scenario,
-                   const DataPaths& paths, const sim::SensorMaker& make_sensor)
-      : panda_(std::move(panda)), obstacles_(WithoutRobot(scenario), paths.models, make_sensor) {}
+  Stage(std::unique_ptr<robot::RobotInterface> arm, const scenarios::Scenario& scenario,
+        const DataPaths& paths, const sim::SensorMaker& make_sensor)
+      : arm_(std::move(arm)), obstacles_(WithoutRobot(scenario), paths.models, make_sensor) {}
 
-  hardware::PandaRobot& panda() { return *panda_; }
   sim::Simulation& obstacles() { return obstacles_; }
 
-  JointState Read() const override { return panda_->Read(); }
-  robot::RobotStatus Status() const override { return panda_->Status(); }
+  JointState Read() const override { return arm_->Read(); }
+  robot::RobotStatus Status() const override { return arm_->Status(); }
   void Submit(const Trajectory& trajectory, EpisodeTime start) override {
-    panda_->Submit(trajectory, start);
+    arm_->Submit(trajectory, start);
   }
-  void Hold() noexcept override { panda_->Hold(); }
-  void Watch(const ObstacleReport& report) override { panda_->Watch(report); }
-  std::vector<SafetyEvent> TakeSafetyEvents() override { return panda_->TakeSafetyEvents(); }
+  void Hold() noexcept override { arm_->Hold(); }
+  void Watch(const ObstacleReport& report) override { arm_->Watch(report); }
+  std::vector<SafetyEvent> TakeSafetyEvents() override { return arm_->TakeSafetyEvents(); }
   void AdvanceTo(EpisodeTime t) override {
-    panda_->AdvanceTo(t);
+    arm_->AdvanceTo(t);
     obstacles_.robot().AdvanceTo(t);
   }
-  std::vector<double> TakeAnswerTimes() override { return panda_->TakeAnswerTimes(); }
-  std::vector<ControlSample> TakeControlLog() override { return panda_->TakeControlLog(); }
+  std::vector<double> TakeAnswerTimes() override { return arm_->TakeAnswerTimes(); }
+  std::vector<ControlSample> TakeControlLog() override { return arm_->TakeControlLog(); }
 
  private:
-  std::unique_ptr<hardware::PandaRobot> panda_;
+  std::unique_ptr<robot::RobotInterface> arm_;
   sim::Simulation obstacles_;  // without a robot
 };
+
+bench::EpisodeWorld WorldAround(std::unique_ptr<robot::RobotInterface> arm,
+                                const scenarios::Scenario& scenario, const robot::RobotModel& robot,
+                                const DataPaths& paths, const HardwareSite& site) {
+  const auto stage = std::make_shared<Stage>(std::move(arm), scenario, paths, site.make_sensor);
+  bench::EpisodeWorld world;
+  world.robot = stage.get();
+  world.sensors = stage->obstacles().sensors();
+  world.model_xml = sim::BuildWorldXml(scenario, robot.mount_links(), paths.models);
+  world.joints = robot.joint_names();
+  world.obstacles = stage->obstacles().obstacles();
+  world.facts["robot_at"] = site.address + (IsLoopback(site.address) ? " (simulated)" : "");
+  if (!site.camera.empty()) world.facts["camera"] = site.camera;
+  world.owner = stage;
+  return world;
+}
 
 }  // namespace
 
@@ -77,25 +93,23 @@ std::optional<std::string> WhyNotAtStart(const Eigen::VectorXd& q,
          " rad from where the task starts, allowed 0.02: first `sidestep hardware go-to-start`";
 }
 
-bench::WorldFactory HardwareWorlds(const DataPaths& paths, const std::string& address,
-                                   const hardware::PandaOptions& options,
-                                   const sim::SensorMaker& make_sensor) {
+bench::WorldFactory HardwareWorlds(const DataPaths& paths, const HardwareSite& site,
+                                   const hardware::PandaOptions& options) {
   return [=](const scenarios::Scenario& scenario, const robot::RobotModel& robot) {
-    auto panda = ConnectReadyPanda(address, robot, options);
+    auto panda = ConnectReadyPanda(site.address, robot, options);
     if (const auto aside = WhyNotAtStart(panda->Read().q, scenario)) {
       throw InputError("--robot", *aside);
     }
-    const auto stage =
-        std::make_shared<VirtualObstacles>(std::move(panda), scenario, paths, make_sensor);
-    bench::EpisodeWorld world;
-    world.robot = stage.get();
-    world.sensors = stage->obstacles().sensors();
-    world.model_xml = sim::BuildWorldXml(scenario, robot.mount_links(), paths.models);
-    world.joints = robot.joint_names();
-    world.obstacles = stage->obstacles().obstacles();
-    world.facts["robot_at"] = address + (IsLoopback(address) ? " (simulated)" : "");
-    world.owner = stage;
-    return world;
+    return WorldAround(std::move(panda), scenario, robot, paths, site);
+  };
+}
+
+bench::WorldFactory StandingWorlds(const DataPaths& paths, const HardwareSite& site,
+                                   std::unique_ptr<hardware::FciDriver> driver) {
+  const auto held = std::make_shared<std::unique_ptr<hardware::FciDriver>>(std::move(driver));
+  return [=](const scenarios::Scenario& scenario, const robot::RobotModel& robot) {
+    return WorldAround(std::make_unique<hardware::StandingRobot>(std::move(*held)), scenario, robot,
+                       paths, site);
   };
 }
 

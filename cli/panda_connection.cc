@@ -11,16 +11,19 @@ bool IsLoopback(const std::string& address) {
   return address == "localhost" || address.starts_with("127.");
 }
 
+std::string NumericAddress(const std::string& address) {
+  return address == "localhost" ? "127.0.0.1" : address;
+}
+
 std::unique_ptr<hardware::FciDriver> ConnectPanda(const std::string& address) {
   if (!IsLoopback(address) && !hardware::HasLibfranka()) {
     throw InputError("--robot", "'" + address +
                                     "' is not on this machine, and a real robot needs libfranka, "
                                     "which this program was built without: docs/hardware.md");
   }
-  const std::string numeric = address == "localhost" ? "127.0.0.1" : address;
   try {
     if (!IsLoopback(address)) return hardware::MakeLibfrankaDriver(address, {});
-    return std::make_unique<hardware::RawFciDriver>(numeric);
+    return std::make_unique<hardware::RawFciDriver>(NumericAddress(address));
   } catch (const hardware::FciError& error) {
     if (error.kind() == hardware::FciError::Kind::kVersion) {
       OperatorLog(address).Refused({control::SafetyCheck::kConfiguration, error.what()});

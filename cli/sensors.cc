@@ -1,18 +1,14 @@
 #include "sidestep/cli/sensors.h"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 #include <variant>
 
-#include "sidestep/core/input_error.h"
 #include "sidestep/render/rendered_camera.h"
 #include "sidestep/sim/static_cells.h"
 
 namespace sidestep::cli {
 namespace {
-
-constexpr const char* kTagImages = "tag_images";
 
 hardware::TaggedBody BodyOf(const std::string& name, const Eigen::Vector3d& size_m,
                             const std::vector<scenarios::Tag>& tags) {
@@ -21,17 +17,6 @@ hardware::TaggedBody BodyOf(const std::string& name, const Eigen::Vector3d& size
     body.tags.push_back({tag.id, tag.size_m, scenarios::TagPose(size_m, tag.face)});
   }
   return body;
-}
-
-std::unique_ptr<robot::Sensor> MakeTagImages(const scenarios::Scenario& scenario,
-                                             const sim::World& world,
-                                             const std::optional<Pose>& X_WC = std::nullopt) {
-  sim::CheckSensorSettings(scenario, kTagImages);
-  auto frames = std::make_unique<render::RenderedCamera>(scenario, world);
-  hardware::TagSensorOptions options = TagSensorOptionsOf(scenario);
-  if (X_WC) options.X_WC = *X_WC;
-  options.p_WStatic = sim::StaticCells(world, scenario.grid, scenario.sensor.cells);
-  return std::make_unique<hardware::TagSensor>(std::move(frames), std::move(options));
 }
 
 }  // namespace
@@ -64,25 +49,21 @@ hardware::TagSensorOptions TagSensorOptionsOf(const scenarios::Scenario& scenari
   return options;
 }
 
-sim::SensorMaker CalibratedCamera(const scenarios::Scenario& scenario,
-                                  const hardware::CameraCalibration& calibration,
-                                  const std::string& today) {
-  if (scenario.sensor.name != kTagImages) {
-    throw InputError("--calibration", "is of a camera: the sensor is '" + scenario.sensor.name +
-                                          "', not tag_images");
-  }
-  sim::CheckSensorSettings(scenario, kTagImages);
-  const auto why_not = hardware::WhyNotUsable(calibration, render::kRenderedSerial,
-                                              render::IntrinsicsOf(scenario), today);
-  if (why_not) throw InputError("--calibration", *why_not);
-  return [X_WC = calibration.X_WC](const scenarios::Scenario& of, const sim::World& world) {
-    return MakeTagImages(of, world, X_WC);
-  };
+std::unique_ptr<robot::Sensor> MakeTagSensor(std::unique_ptr<robot::FrameSource> frames,
+                                             hardware::TagSensorOptions options,
+                                             const scenarios::Scenario& scenario,
+                                             const sim::World& world) {
+  options.p_WStatic = sim::StaticCells(world, scenario.grid, scenario.sensor.cells);
+  return std::make_unique<hardware::TagSensor>(std::move(frames), std::move(options));
 }
 
 std::unique_ptr<robot::Sensor> MakeSensor(const scenarios::Scenario& scenario,
                                           const sim::World& world) {
-  if (scenario.sensor.name == kTagImages) return MakeTagImages(scenario, world);
+  if (scenario.sensor.name == kTagImages) {
+    sim::CheckSensorSettings(scenario, kTagImages);
+    return MakeTagSensor(std::make_unique<render::RenderedCamera>(scenario, world),
+                         TagSensorOptionsOf(scenario), scenario, world);
+  }
   return sim::MakeSensor(scenario, world);
 }
 

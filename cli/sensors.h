@@ -4,11 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "sidestep/hardware/camera_calibration.h"
 #include "sidestep/hardware/tag_sensor.h"
 #include "sidestep/sim/sensors.h"
 
 namespace sidestep::cli {
+
+/// The sensor that finds tags in pictures.
+inline constexpr const char* kTagImages = "tag_images";
 
 /// Every sensor that a scenario may name, sorted: those of sim/ and `tag_images`, which is put
 /// together here, from pictures that render/ draws and what hardware/ finds in them.
@@ -23,16 +25,15 @@ std::string MeaningOfSensor(const std::string& name);
 std::unique_ptr<robot::Sensor> MakeSensor(const scenarios::Scenario& scenario,
                                           const sim::World& world);
 
-/// Makes the scenario's camera, which stands where it was calibrated to stand.
-/// @param today YYYY-MM-DD, UTC.
-/// @throws InputError, blaming --calibration, for a sensor that is no camera, and a camera that is
-///   not the calibrated one or was calibrated too long ago.
-sim::SensorMaker CalibratedCamera(const scenarios::Scenario& scenario,
-                                  const hardware::CameraCalibration& calibration,
-                                  const std::string& today);
-
 /// What a sensor of tags has to know of a scenario: its moving bodies that bear tags, and, by the
 /// tags of static boxes, where the camera must see them.
 hardware::TagSensorOptions TagSensorOptionsOf(const scenarios::Scenario& scenario);
+
+/// What finds those tags in the pictures of any camera. @param options of the scenario, perhaps
+/// with another place of the camera. @param world holds what stands still.
+std::unique_ptr<robot::Sensor> MakeTagSensor(std::unique_ptr<robot::FrameSource> frames,
+                                             hardware::TagSensorOptions options,
+                                             const scenarios::Scenario& scenario,
+                                             const sim::World& world);
 
 }  // namespace sidestep::cli

@@ -102,9 +102,8 @@ bench::WorldFactory ServedWorlds(const DataPaths& paths, const std::string& faul
     const auto owner = std::make_shared<Owner>();
     owner->server = std::make_unique<ServedPanda>(scenario, robot, paths.models, script);
     const bench::WorldFactory make = HardwareWorlds(
-        paths, owner->server->address(),
-        {.safety = sim::SafetyOf(scenario, robot), .lockstep = true, .stops_at_once = {}},
-        &MakeSensor);
+        paths, {owner->server->address(), &MakeSensor, ""},
+        {.safety = sim::SafetyOf(scenario, robot), .lockstep = true, .stops_at_once = {}});
     bench::EpisodeWorld world = make(scenario, robot);
     owner->world = std::exchange(world.owner, owner);
     return world;

@@ -1,9 +1,14 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <map>
 #include <memory>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,6 +36,7 @@
 #include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/number_text.h"
+#include "sidestep/core/text_file.h"
 #include "sidestep/planner/registry.h"
 
 namespace sidestep::cli {
@@ -42,9 +48,33 @@ struct ValidateOptions {
   std::string planner, scenario, out, only;
   std::vector<std::string> settings;
   int seeds = 2, jobs = 0;
-  int soak = 0;  // episodes; 0: none
+  std::string soak;  // draws: N or FIRST:LAST; empty: none
+  bool resume = false;
   std::string command;
 };
+
+struct Draws {
+  int first = 1, last = 0;
+};
+
+// Of `--soak`: as many from 1 on, or from one to another.
+Draws ParseSoak(const std::string& text) {
+  constexpr int kMost = 1000000;
+  if (text.empty()) return {};
+  const auto number = [&](const std::string& word) {
+    int value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error == std::errc() && end == word.data() + word.size() && value >= 1 && value <= kMost) {
+      return value;
+    }
+    throw InputError("--soak", "must be N or FIRST:LAST, from 1 to 1000000, is '" + text + "'");
+  };
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) return {1, number(text)};
+  const Draws draws = {number(text.substr(0, colon)), number(text.substr(colon + 1))};
+  if (draws.last < draws.first) throw InputError("--soak", "'" + text + "' ends before it begins");
+  return draws;
+}
 
 // The most that the program has had so far; its unit does not matter.
 double MostMemory() {
@@ -91,7 +121,9 @@ class Validation {
   std::vector<bench::ValidationCase> CasesOf() const {
     std::vector<bench::ValidationCase> cases =
         bench::ValidationMatrix(subject_.scenario, options_.seeds, HasServer());
-    for (bench::ValidationCase& one : bench::SoakCases(subject_.scenario, options_.soak)) {
+    const Draws draws = ParseSoak(options_.soak);
+    for (bench::ValidationCase& one :
+         bench::SoakCases(subject_.scenario, draws.first, draws.last)) {
       cases.push_back(std::move(one));
     }
     return cases;
@@ -139,13 +171,15 @@ class Validation {
 
   int RunAll() const {
     const OutFolder out(Folder(), {std::begin(kFiles), std::end(kFiles)});
+    const std::map<std::string, bench::StudyRow> before = RowsBefore(out.path());
     const StopSignals signals;
     std::optional<double> memory_growth;
-    const std::vector<bench::StudyRow> rows = RunCases(signals, memory_growth);
+    const std::vector<bench::StudyRow> rows = RunCases(before, signals, memory_growth);
     const auto failed = std::count_if(rows.begin(), rows.end(), [](const bench::StudyRow& row) {
       return row.outcome == bench::kFailed;
     });
-    const bool is_whole = rows.size() == cases_.size() && failed == 0;
+    const std::size_t missing = CountMissing(rows);
+    const bool is_whole = missing == 0 && failed == 0;
     const std::vector<bench::JudgedItem> items =
         bench::JudgeItems({subject_.scenario, rows, memory_growth}, is_whole);
     const bench::ValidationTitle title = TitleOf();
@@ -157,9 +191,9 @@ class Validation {
           out.path());
     FinishOutput();
     if (failed > 0) PrintError("validate: {} episodes could not be run\n", failed);
-    if (rows.size() < cases_.size()) {
-      PrintError("validate: {} of {} episodes: it was stopped by {}\n", rows.size(), cases_.size(),
-                 signals.first());
+    if (missing > 0) {
+      PrintError("validate: {} of {} episodes: it was stopped by {}\n", cases_.size() - missing,
+                 cases_.size(), signals.first());
     }
     return HasFailed(items) || !is_whole ? 1 : 0;
   }
@@ -181,20 +215,60 @@ class Validation {
                           : ""),
             options_.command,
             static_cast<int>(cases_.size()),
-            VersionsIn(Provenance(Identify(subject_.scenario, paths_)))};
+            VersionsIn(Provenance(Identify(subject_.scenario, paths_))),
+            Subject()};
   }
 
-  // In the order of the cases; those that were not run to their end are left out.
+  std::size_t CountMissing(const std::vector<bench::StudyRow>& rows) const {
+    std::set<std::string> run;
+    for (const bench::StudyRow& row : rows) run.insert(row.factors.at("case"));
+    const auto is_missing = [&](const auto& one) { return !run.contains(NameOf(one)); };
+    return static_cast<std::size_t>(std::count_if(cases_.begin(), cases_.end(), is_missing));
+  }
+
+  std::string Subject() const { return bench::RunId(Identify(subject_.scenario, paths_)); }
+
+  // Of a report that is there already, by the names of their cases: they are not run again.
+  std::map<std::string, bench::StudyRow> RowsBefore(const std::string& out) const {
+    std::map<std::string, bench::StudyRow> rows;
+    const std::string table = out + "/validation.csv", report = out + "/validation.json";
+    if (!options_.resume || !std::filesystem::exists(table)) return rows;
+    constexpr std::uintmax_t kMostBytes = 1 << 30;
+    const auto json = nlohmann::json::parse(ReadTextFile(report, kMostBytes), nullptr, false);
+    if (!json.is_object() || json.value("subject", "") != Subject()) {
+      throw InputError("--resume", "'" + report +
+                                       "' is of another scenario, robot, planner or program: "
+                                       "what it found does not count here");
+    }
+    for (bench::StudyRow& row : bench::ReadValidationCsv(table)) {
+      if (row.outcome == bench::kFailed) continue;  // that is tried again
+      const std::string name = row.factors.at("case");
+      rows.emplace(name, std::move(row));
+    }
+    return rows;
+  }
+
+  // In the order of the cases, and what was there before and is no case now; those that were not
+  // run to their end are left out.
   // @param memory_growth of the last nine tenths, if there is a soak.
-  std::vector<bench::StudyRow> RunCases(const StopSignals& signals,
+  std::vector<bench::StudyRow> RunCases(std::map<std::string, bench::StudyRow> before,
+                                        const StopSignals& signals,
                                         std::optional<double>& memory_growth) const {
     const int count = static_cast<int>(cases_.size());
     double memory_at_first = 0;
     std::vector<std::optional<bench::StudyRow>> done(cases_.size());
     std::mutex telling;
     int num_done = 0, told = 0;
+    for (std::size_t i = 0; i < cases_.size(); ++i) {
+      const auto found = before.find(NameOf(cases_[i]));
+      if (found == before.end()) continue;
+      done[i] = std::move(found->second);
+      before.erase(found);
+      ++num_done;
+    }
+    if (num_done > 0) PrintError("{} of {} episodes, from before\n", num_done, count);
     bench::RunTasks(count, options_.jobs, [&](int i) {
-      if (signals.count() > 0) return;
+      if (signals.count() > 0 || done[static_cast<std::size_t>(i)]) return;
       const bench::ValidationCase& one = cases_[static_cast<std::size_t>(i)];
       bench::StudyRow row =
           RunValidationCase(one, subject_, worlds_, [&] { return signals.first(); }).row;
@@ -203,16 +277,19 @@ class Validation {
       done[static_cast<std::size_t>(i)] = std::move(row);
       const std::lock_guard lock(telling);
       const int percent = 100 * ++num_done / count;
-      if (percent < 10) memory_at_first = MostMemory();
+      if (percent < 10 || memory_at_first == 0) memory_at_first = MostMemory();
       if (percent / 10 == told / 10) return;
       told = percent;
       PrintError("{} of {} episodes\n", num_done, count);
     });
-    if (options_.soak > 0) memory_growth = MostMemory() / memory_at_first - 1;
+    if (!options_.soak.empty() && memory_at_first > 0) {
+      memory_growth = MostMemory() / memory_at_first - 1;
+    }
     std::vector<bench::StudyRow> rows;
     for (std::optional<bench::StudyRow>& row : done) {
       if (row) rows.push_back(std::move(*row));
     }
+    for (auto& [name, row] : before) rows.push_back(std::move(row));
     return rows;
   }
 
@@ -256,10 +333,12 @@ void AddValidateCommand(CommandLine& line) {
                    "How often each combination is run, its obstacle coming from elsewhere [2]")
       ->check(NumberFrom(1, 1000));
   validate
-      ->add_option("--soak", options->soak, "Also so many episodes at random, an hour or so [2000]")
+      ->add_option("--soak", options->soak,
+                   "Also so many episodes at random, an hour or so; N, or draws FIRST:LAST [2000]")
       ->expected(0, 1)
-      ->default_str("2000")
-      ->check(NumberFrom(1, 1000000));
+      ->default_str("2000");
+  validate->add_flag("--resume", options->resume,
+                     "Run only what the report in the folder lacks, and judge both together");
   validate->add_option("--only", options->only,
                        "Run this case of the report alone, and keep its trace.h5 and result.json");
   AddJobsOption(*validate, options->jobs);

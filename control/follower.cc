@@ -102,6 +102,9 @@ Command Follower::Tick(const Measured& measured, HorizonOffset period) noexcept 
   command.motion = target_ ? tracker_.Step(measured.commanded, *target_, period_s) : brake();
 
   Reaction reaction = Reaction::kNone;
+  if (supervisor_ && plan != nullptr) {
+    supervisor_->LookAhead(plan->trajectory, progress_.t - plan->start, kQuickening_per_s);
+  }
   if (supervisor_) reaction = supervisor_->Judge(measured, command.motion, period_s);
   if (reaction != Reaction::kNone) {
     command.motion = brake();

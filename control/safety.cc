@@ -42,6 +42,8 @@ const char* ToString(SafetyCheck check) {
       return "clock_jump";
     case SafetyCheck::kObstacleTooFast:
       return "obstacle_too_fast";
+    case SafetyCheck::kToolSpeed:
+      return "tool_speed";
   }
   return "";
 }

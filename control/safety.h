@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 
 #include "sidestep/control/joint_vector.h"
@@ -35,8 +36,9 @@ enum class SafetyCheck {
   kSlowAnswer = 18,       ///< an answer to the robot took too long to make
   kClockJump = 19,        ///< a sensor's clock and ours have moved against each other
   kObstacleTooFast = 20,  ///< an obstacle is faster than was declared
+  kToolSpeed = 21,        ///< the tool is to be faster than it may be
 };
-inline constexpr int kNumSafetyChecks = 21;
+inline constexpr int kNumSafetyChecks = 22;
 /// "perception_stale", "clearance", ...
 const char* ToString(SafetyCheck check);
 
@@ -95,6 +97,7 @@ struct SafetySettings {
   double success_rate = 0.9;      ///< 13: of the latest 100 packets
   int lost_in_a_row = 5;          ///< 13
   double too_fast_s = 0.1;        ///< 20: for so long
+  double tool_speed_m_s = std::numeric_limits<double>::infinity();  ///< 21
   double resume_s = 1;
 };
 

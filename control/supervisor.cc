@@ -56,7 +56,8 @@ Supervisor::Supervisor(const robot::RobotModel& robot, const JerkLimitedTracker&
       settings_(settings),
       capsules_(robot),
       scale_(robot::ToleranceScale(robot)),
-      findings_(kLogLength) {
+      findings_(kLogLength),
+      tool_gate_(robot, settings.tool_speed_m_s) {
   if (robot.capsules().empty()) {
     throw std::invalid_argument("Supervisor: the robot has no capsules");
   }
@@ -86,6 +87,11 @@ bool Supervisor::Refuses(const JointPoint& before, bool begins, const JointPoint
   return is_refused && settings_.profile == SafetyProfile::kLab;
 }
 
+void Supervisor::LookAhead(const Trajectory& plan, HorizonOffset offset,
+                           double slowing_per_s) noexcept {
+  if (!tool_gate_.is_open()) tool_ahead_ = tool_gate_.LookAhead(plan, offset, slowing_per_s);
+}
+
 Reaction Supervisor::Judge(const Measured& measured, const JointPoint& next,
                            double period_s) noexcept {
   now_ = measured.t;
@@ -99,6 +105,7 @@ Reaction Supervisor::Judge(const Measured& measured, const JointPoint& next,
   JudgeRobot(measured);
   JudgeCommand(measured, next, period_s);
   JudgePlaces(report, next, period_s, if_low);
+  JudgeTool(measured, next, period_s);
   pushed_s_ = 0 < pushed_s_ ? pushed_s_ + period_s : pushed_s_;
   return React();
 }
@@ -234,6 +241,20 @@ void Supervisor::JudgePlaces(const ObstacleReport* report, const JointPoint& nex
   } else {
     Find(SafetyCheck::kStopPath, Reaction::kSlow, is_slow, margin_m,
          settings_.margin_m + settings_.slow_m);
+  }
+}
+
+// It slows down where what is planned is too fast; what is sent never is, but by a fault of ours.
+void Supervisor::JudgeTool(const Measured& measured, const JointPoint& next, double period_s) {
+  if (tool_gate_.is_open()) return;
+  const ToolGate::Ahead ahead = std::exchange(tool_ahead_, {});
+  pace_ = std::min(pace_, ahead.pace);
+  const double speed_m_s = tool_gate_.SpeedBetween(measured.commanded.q, next.q, period_s);
+  const double most_m_s = tool_gate_.most_m_s();
+  if (!(speed_m_s <= most_m_s)) {
+    Find(SafetyCheck::kToolSpeed, Reaction::kHold, speed_m_s, most_m_s);
+  } else {
+    Find(SafetyCheck::kToolSpeed, Reaction::kSlow, ahead.pace < 1, ahead.fastest_m_s, most_m_s);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "sidestep/control/ring_log.h"
 #include "sidestep/control/safety.h"
 #include "sidestep/control/tick.h"
+#include "sidestep/control/tool_gate.h"
 #include "sidestep/control/tracker.h"
 #include "sidestep/core/obstacle_state.h"
 #include "sidestep/robot/robot_model.h"
@@ -50,6 +51,10 @@ class Supervisor {
   bool Refuses(const JointPoint& before, bool begins, const JointPoint* other,
                const Measured& measured) noexcept;
 
+  /// The plan that is followed is at `offset` now: as of the next Judge, the tool is to keep its
+  /// speed on it. @param slowing_per_s how quickly the pace can fall.
+  void LookAhead(const Trajectory& plan, HorizonOffset offset, double slowing_per_s) noexcept;
+
   /// What is to be done instead of sending `next`: kNone, kHold or kBrake.
   Reaction Judge(const Measured& measured, const JointPoint& next, double period_s) noexcept;
 
@@ -82,6 +87,7 @@ class Supervisor {
   void JudgeCommand(const Measured& measured, const JointPoint& next, double period_s);
   void JudgePlaces(const ObstacleReport* report, const JointPoint& next, double period_s,
                    Reaction if_low);
+  void JudgeTool(const Measured& measured, const JointPoint& next, double period_s);
   double MarginAtRest(const ObstacleReport& report) const;
   double PaceFor(double left_m, double at_rest_m) const;
   void PlaceStop(const JointPoint& next, double period_s);
@@ -111,6 +117,8 @@ class Supervisor {
   // The capsules at kStops + 1 moments of the stop after the command, and those moments.
   std::array<ArmCapsules::All, kStops + 1> placed_;
   std::array<double, kStops + 1> placed_s_{};
+  ToolGate tool_gate_;
+  ToolGate::Ahead tool_ahead_;
 };
 
 }  // namespace sidestep::control

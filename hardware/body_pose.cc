@@ -15,13 +15,18 @@ namespace {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-// A corner of a tag, where an ideal lens would have seen it, and what its two edges tell of it: the
-// rows of `edges` are their normals by their deviations, so that edges * (an error in px) are two
-// independent errors of deviation 1.
+// A corner of a tag, and where an ideal lens would have seen it.
 struct Corner {
   Eigen::Vector3d p_OQ;
   Eigen::Vector2d ideal;
-  Eigen::Matrix2d edges;
+};
+
+// An edge of a tag, what there is to be known: how far its middle and its ends are off across it.
+struct Edge {
+  std::size_t from = 0, to = 0;  // corners
+  // The normal, by twice the deviations of both: (off_from + off_to) and (off_from - off_to) times
+  // these are two independent errors of deviation 1.
+  Eigen::RowVector2d middle, turn;
 };
 
 struct Fit {
@@ -47,8 +52,8 @@ const TagDetection* Find(const std::vector<TagDetection>& seen, int id) {
 class Refinement {
  public:
   Refinement(const robot::CameraIntrinsics& camera, const std::vector<Corner>& corners,
-             const std::optional<RotationPrior>& prior)
-      : corners_(corners), focal_px_(camera.fx, camera.fy), prior_(prior) {}
+             const std::vector<Edge>& edges, const std::optional<RotationPrior>& prior)
+      : corners_(corners), edges_(edges), focal_px_(camera.fx, camera.fy), prior_(prior) {}
 
   Fit Run(const Pose& start) const {
     Vector6 gradient;
@@ -84,22 +89,28 @@ class Refinement {
     fit.X_CO = X_CO;
     *gradient = Vector6::Zero();
     double cost = 0;
+    std::vector<Eigen::Vector2d> off_px;
+    std::vector<Eigen::Matrix<double, 2, 6>> J;
     for (const Corner& corner : corners_) {
       const Eigen::Vector3d p_OQ_C = X_CO.Rotate(corner.p_OQ);
       const Eigen::Vector3d p = p_OQ_C + X_CO.translation();
       if (!(p.z() > 0)) return fit;  // behind the camera
-      const Eigen::Vector2d off_px = focal_px_.cwiseProduct(p.head<2>() / p.z() - corner.ideal);
-      Eigen::Matrix<double, 2, 6> J;
-      J.leftCols<3>() << 1 / p.z(), 0, -p.x() / (p.z() * p.z()), 0, 1 / p.z(),
-          -p.y() / (p.z() * p.z());
-      J.leftCols<3>() = focal_px_.asDiagonal() * J.leftCols<3>().eval();
-      J.rightCols<3>() = -J.leftCols<3>() * Cross(p_OQ_C);
-      fit.squares_px += off_px.squaredNorm();
-      const Eigen::Vector2d off = corner.edges * off_px;
-      J = corner.edges * J.eval();
+      off_px.push_back(focal_px_.cwiseProduct(p.head<2>() / p.z() - corner.ideal));
+      Eigen::Matrix<double, 2, 3> J_p;
+      J_p << 1 / p.z(), 0, -p.x() / (p.z() * p.z()), 0, 1 / p.z(), -p.y() / (p.z() * p.z());
+      J_p = focal_px_.asDiagonal() * J_p.eval();
+      J.emplace_back() << J_p, -J_p * Cross(p_OQ_C);
+      fit.squares_px += off_px.back().squaredNorm();
+    }
+    for (const Edge& edge : edges_) {
+      Eigen::Vector2d off;
+      off << edge.middle * (off_px[edge.from] + off_px[edge.to]),
+          edge.turn * (off_px[edge.from] - off_px[edge.to]);
+      Eigen::Matrix<double, 2, 6> J_edge;
+      J_edge << edge.middle * (J[edge.from] + J[edge.to]), edge.turn * (J[edge.from] - J[edge.to]);
       cost += off.squaredNorm();
-      fit.information += J.transpose() * J;
-      *gradient += J.transpose() * off;
+      fit.information += J_edge.transpose() * J_edge;
+      *gradient += J_edge.transpose() * off;
     }
     if (prior_) {
       const double weight = 1 / (prior_->sigma_rad * prior_->sigma_rad);
@@ -113,51 +124,43 @@ class Refinement {
   }
 
   const std::vector<Corner>& corners_;
+  const std::vector<Edge>& edges_;
   Eigen::Vector2d focal_px_;
   std::optional<RotationPrior> prior_;
 };
 
-double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
-// The standard deviation of each edge of a tag.
-double EdgeSigmaOf(const Eigen::Matrix<double, 2, 4>& corners, double large_px) {
-  double area = 0, longest = 0;
+// The four of a tag, whose first corner is this one.
+void AppendEdges(const Eigen::Matrix<double, 2, 4>& corners_px, std::size_t first_corner,
+                 double sigma_px, std::vector<Edge>* edges) {
   for (int k = 0; k < 4; ++k) {
-    const Eigen::Vector2d from = corners.col(k), to = corners.col((k + 1) % 4);
-    area += Cross(from, to) / 2;
-    longest = std::max(longest, (to - from).norm());
-  }
-  return EdgeSigma(large_px, std::abs(area) / longest, longest);
-}
-
-// What the two edges at each corner tell of it.
-std::array<Eigen::Matrix2d, 4> EdgesOf(const Eigen::Matrix<double, 2, 4>& corners,
-                                       double edge_sigma_px) {
-  const double sigma_px = EdgeSigmaOf(corners, edge_sigma_px);
-  std::array<Eigen::Matrix2d, 4> edges;
-  for (int k = 0; k < 4; ++k) {
-    const Eigen::Vector2d along = corners.col((k + 1) % 4) - corners.col(k);
+    const int next = (k + 1) % 4;
+    const Eigen::Vector2d from = corners_px.col(k), to = corners_px.col(next);
+    const EdgeErrors errors = ErrorsOfEdge(from, to, sigma_px);
+    const Eigen::Vector2d along = (to - from).normalized();
     const Eigen::RowVector2d normal(along.y(), -along.x());
-    const Eigen::RowVector2d row = normal / (along.norm() * sigma_px);
-    edges[static_cast<std::size_t>(k)].row(0) = row;
-    edges[static_cast<std::size_t>((k + 1) % 4)].row(1) = row;
+    edges->push_back({first_corner + static_cast<std::size_t>(k),
+                      first_corner + static_cast<std::size_t>(next),
+                      normal / (2 * errors.middle_px), normal / (2 * errors.turn_px)});
   }
-  return edges;
 }
 
 }  // namespace
 
-double EdgeSigma(double large_px, double width_px, double longest_px) {
-  const double small = 20 / width_px, aside = 0.35 * longest_px / width_px;
-  return large_px * (1 + small * small) * (1 + aside * aside * aside * aside);
+EdgeErrors ErrorsOfEdge(const Eigen::Vector2d& from_px, const Eigen::Vector2d& to_px,
+                        double sigma_px) {
+  constexpr double kLeastPlaces = 16, kApart_px = 8, kLeastCrossed = 0.25;
+  const Eigen::Vector2d along = to_px - from_px;
+  const double n = std::max(kLeastPlaces, std::floor(along.norm() / kApart_px));
+  const double crossed = std::max(kLeastCrossed, along.cwiseAbs().minCoeff());
+  const double middle_px = sigma_px * std::sqrt((1 + 1 / (crossed * crossed)) / n);
+  return {middle_px, middle_px * std::sqrt(3 * (n + 1) / (n - 1))};
 }
 
 std::optional<BodyPose> LocateBody(const robot::CameraIntrinsics& camera, const TaggedBody& body,
                                    const std::vector<TagDetection>& seen, double edge_sigma_px,
                                    const std::optional<RotationPrior>& prior) {
   std::vector<Corner> corners;
+  std::vector<Edge> edges;
   const BodyTag* largest = nullptr;
   Eigen::Matrix<double, 2, 4> corners_of_largest;
   double largest_px = 0;
@@ -169,10 +172,8 @@ std::optional<BodyPose> LocateBody(const robot::CameraIntrinsics& camera, const 
     for (int k = 0; k < 4; ++k) ideal.col(k) = robot::Unproject(camera, found->corners_px.col(k));
     if (!ideal.allFinite()) return std::nullopt;
     const Eigen::Matrix<double, 3, 4> p_TQ = CornersOfTag(tag.size_m);
-    const std::array<Eigen::Matrix2d, 4> edges = EdgesOf(found->corners_px, edge_sigma_px);
-    for (int k = 0; k < 4; ++k) {
-      corners.push_back({tag.X_OT * p_TQ.col(k), ideal.col(k), edges[static_cast<std::size_t>(k)]});
-    }
+    AppendEdges(found->corners_px, corners.size(), edge_sigma_px, &edges);
+    for (int k = 0; k < 4; ++k) corners.push_back({tag.X_OT * p_TQ.col(k), ideal.col(k)});
     ++num_tags;
     if (found->shortest_edge_px() > largest_px) {
       largest = &tag;
@@ -181,7 +182,7 @@ std::optional<BodyPose> LocateBody(const robot::CameraIntrinsics& camera, const 
     }
   }
   if (largest == nullptr) return std::nullopt;
-  const Refinement refinement(camera, corners, prior);
+  const Refinement refinement(camera, corners, edges, prior);
   const std::array<Pose, 2> starts = PosesOfSquare(corners_of_largest, largest->size_m);
   const Pose X_TO = largest->X_OT.Inverse();
   Fit best = refinement.Run(starts[0] * X_TO), other = refinement.Run(starts[1] * X_TO);

@@ -49,18 +49,23 @@ struct BodyPose {
   double ambiguity = 0;
 };
 
-/// The standard deviation of an edge of a tag across itself [px]. A corner is where two edges meet,
-/// so its own error is the larger the more acute it is. `large` is that of a tag that is seen large
-/// and from the front; one of this width (its area by its longest edge) has
-///   large (1 + (20 px / width)^2) (1 + (0.35 longest / width)^4),
-/// the more the smaller its modules and the more it is seen from the side: measured with rendered
-/// pictures (docs/hardware.md).
-double EdgeSigma(double large_px, double width_px, double longest_px);
-inline constexpr double kEdgeSigma_px = 0.062;  ///< `large` of pictures without flaws
+/// How an edge of a tag errs across itself [px]. The detector looks for it at N places along it,
+/// one every 8 px and at least 16, and lays a line through them; where each errs by sigma, the
+/// middle of the line errs by `middle` = sigma / sqrt(N), and each end beyond that, one up and one
+/// down, by `turn` = middle sqrt(3 (N + 1) / (N - 1)). An edge along the rows or columns of pixels
+/// errs alike at all places: with c of them crossed, and no fewer than a quarter, both are larger
+/// by sqrt(1 + 1 / c^2). Sources: refine_edges of AprilRobotics/apriltag 3.3.0; the law of the
+/// straight line fitted to even places; c as measured with rendered pictures (docs/hardware.md).
+struct EdgeErrors {
+  double middle_px = 0, turn_px = 0;
+};
+EdgeErrors ErrorsOfEdge(const Eigen::Vector2d& from_px, const Eigen::Vector2d& to_px,
+                        double sigma_px);
+inline constexpr double kEdgeSigma_px = 0.09;   ///< of rendered pictures (docs/sensors.md)
 
 /// The pose that explains the edges of all tags of a body best, in pixels: a joint least-squares
 /// fit from either solution of the largest tag (hardware/planar_pose.h).
-/// @param edge_sigma_px of a large tag's edge, as of EdgeSigma.
+/// @param edge_sigma_px of one place of an edge, as of ErrorsOfEdge.
 /// @return nothing if none of its tags is among `seen`, or nothing could explain them.
 std::optional<BodyPose> LocateBody(const robot::CameraIntrinsics& camera, const TaggedBody& body,
                                    const std::vector<TagDetection>& seen, double edge_sigma_px,

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "sidestep/core/yaml_reader.h"
 #include "sidestep/robot/camera_image.h"
+#include "sidestep/robot/frame_source.h"
 
 namespace sidestep::hardware {
 
@@ -11,6 +13,12 @@ namespace sidestep::hardware {
 struct NamedCamera {
   std::string serial;
   robot::CameraIntrinsics intrinsics;
+};
+
+/// A camera that is open.
+struct OpenCamera {
+  NamedCamera camera;
+  std::unique_ptr<robot::FrameSource> frames;
 };
 
 /// Reads such a map. @throws InputError.

@@ -76,6 +76,8 @@ class RealSenseCamera final : public robot::FrameSource {
   RealSenseCamera(const RealSenseCamera&) = delete;
   RealSenseCamera& operator=(const RealSenseCamera&) = delete;
 
+  const robot::CameraIntrinsics& camera() const { return camera_; }
+
   EpisodeTime NextDue() const override { return EpisodeTime(0); }  // asked every millisecond
 
   std::optional<robot::Frame> Read(EpisodeTime now) override {
@@ -132,9 +134,10 @@ class RealSenseCamera final : public robot::FrameSource {
 
 }  // namespace
 
-std::unique_ptr<robot::FrameSource> OpenRealSense(const RealSenseOptions& options) {
+OpenCamera OpenRealSense(const RealSenseOptions& options) {
   try {
-    return std::make_unique<RealSenseCamera>(options);
+    auto camera = std::make_unique<RealSenseCamera>(options);
+    return {{options.serial, camera->camera()}, std::move(camera)};
   } catch (const rs2::error& error) {
     throw InputError("--camera", options.serial + ": " + error.what());
   }

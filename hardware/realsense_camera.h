@@ -1,9 +1,8 @@
 #pragma once
 
-#include <memory>
 #include <string>
 
-#include "sidestep/robot/frame_source.h"
+#include "sidestep/hardware/camera_file.h"
 
 namespace sidestep::hardware {
 
@@ -23,6 +22,6 @@ struct RealSenseOptions {
 /// @throws InputError if this build is without the library, there is no such camera, or its lens is
 ///   described in a way that robot/camera_image.h has not. What it gives throws RobotError once it
 ///   is unplugged.
-std::unique_ptr<robot::FrameSource> OpenRealSense(const RealSenseOptions& options);
+OpenCamera OpenRealSense(const RealSenseOptions& options);
 
 }  // namespace sidestep::hardware

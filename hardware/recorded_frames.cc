@@ -54,7 +54,8 @@ robot::GreyImage ReadPicture(const std::string& path, const robot::CameraIntrins
 
 }  // namespace
 
-RecordedFrames::RecordedFrames(const std::string& folder) : folder_(folder) {
+RecordedFrames::RecordedFrames(const std::string& folder, HorizonOffset latency)
+    : folder_(folder), latency_(latency) {
   const YamlReader top = YamlReader::FromFile(PathIn(folder, kCameraFile));
   camera_ = ReadCamera(top.GetMap("camera"));
   top.CheckNoUnknownKeys();
@@ -82,7 +83,7 @@ RecordedFrames::RecordedFrames(const std::string& folder) : folder_(folder) {
 
 EpisodeTime RecordedFrames::NextDue() const {
   if (next_ == entries_.size()) return EpisodeTime(std::numeric_limits<double>::infinity());
-  return EpisodeTime(entries_[next_].t_s);
+  return EpisodeTime(entries_[next_].t_s) + latency_;
 }
 
 std::optional<robot::Frame> RecordedFrames::Read(EpisodeTime now) {

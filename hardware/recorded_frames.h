@@ -12,14 +12,15 @@ namespace sidestep::hardware {
 /// frames.csv (number, t_s, file) in the order of capture, and the pictures, grey PGM files (P5)
 /// that any viewer shows.
 ///
-/// Plays them back, each at its time of capture. A picture is read when it is due.
+/// Plays them back, each so long after its time of capture. A picture is read when it is due.
 class RecordedFrames final : public robot::FrameSource {
  public:
   /// @throws InputError `FILE:LINE: ...` for a folder that is not such a one.
-  explicit RecordedFrames(const std::string& folder);
+  explicit RecordedFrames(const std::string& folder, HorizonOffset latency = HorizonOffset(0));
 
   const NamedCamera& camera() const { return camera_; }
   std::size_t size() const { return entries_.size(); }
+  EpisodeTime end() const { return EpisodeTime(entries_.back().t_s); }  ///< capture of the last one
 
   /// After the last one: never.
   EpisodeTime NextDue() const override;
@@ -37,6 +38,7 @@ class RecordedFrames final : public robot::FrameSource {
   };
 
   std::string folder_;
+  HorizonOffset latency_;
   NamedCamera camera_;
   std::vector<Entry> entries_;
   std::size_t next_ = 0;

@@ -46,6 +46,7 @@ std::optional<Scan> TagSensor::Read(EpisodeTime now) {
       scan.objects.push_back(std::move(*seen));
     }
   }
+  if (options_.on_look) options_.on_look({*frame, tags, scan});
   return scan;
 }
 

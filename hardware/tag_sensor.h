@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,6 +20,13 @@ struct ReferenceBody {
   Pose X_WO;
 };
 
+/// A picture, and what came of it.
+struct Look {
+  const robot::Frame& frame;
+  const std::vector<TagDetection>& tags;
+  const Scan& scan;
+};
+
 struct TagSensorOptions {
   Pose X_WC;                       ///< of the camera, as it was calibrated
   std::vector<TaggedBody> bodies;  ///< what moves
@@ -31,6 +39,7 @@ struct TagSensorOptions {
   double nearest_m = 0.2, farthest_m = 3;
   double turn_rate_rad_s = 1;  ///< how fast bodies may turn: what a past look is worth
   double most_drift_m = 0.01;  ///< of a reference body; beyond, the camera was moved
+  std::function<void(const Look&)> on_look;  ///< is shown every picture
 };
 
 /// Bodies that a camera knows by their tags, as observations with covariance: found in each

@@ -4,7 +4,7 @@
 
 namespace sidestep::hardware {
 
-std::unique_ptr<robot::FrameSource> OpenRealSense(const RealSenseOptions&) {
+OpenCamera OpenRealSense(const RealSenseOptions&) {
   throw InputError("--camera", "this build is without librealsense2");
 }
 

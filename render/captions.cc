@@ -124,8 +124,11 @@ Status StatusAt(const record::Recording& recording, EpisodeTime t) {
 std::string PlaceOf(const record::Recording& recording) {
   const auto robot_at = recording.header.find("robot_at");
   if (robot_at == recording.header.end()) return "";
-  return "robot at " + robot_at->second +
-         (recording.obstacles.empty() ? "" : ", obstacles virtual");
+  const auto camera = recording.header.find("camera");
+  const std::string obstacles = camera == recording.header.end()
+                                    ? ", obstacles virtual"
+                                    : ", obstacles seen by a camera (" + camera->second + ")";
+  return "robot at " + robot_at->second + (recording.obstacles.empty() ? "" : obstacles);
 }
 
 }  // namespace sidestep::render

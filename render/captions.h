@@ -29,8 +29,8 @@ struct Status {
 /// so at its end. What the robot's supervisor found stands before it for a second.
 Status StatusAt(const record::Recording& recording, EpisodeTime t);
 
-/// Where the robot was, on hardware: "robot at 172.16.0.2, obstacles virtual". Empty for a
-/// simulation.
+/// Where the robot was, on hardware, and what its obstacles were: "robot at 172.16.0.2, obstacles
+/// virtual". Empty for a simulation.
 std::string PlaceOf(const record::Recording& recording);
 
 }  // namespace sidestep::render

@@ -41,6 +41,23 @@ std::vector<Pose> PrescribedAt(const record::Recording& recording, EpisodeTime t
   return poses;
 }
 
+// By a camera that sees what is there; what it never saw is as prescribed at first.
+std::vector<Pose> SeenAt(const record::Recording& recording, EpisodeTime t) {
+  std::vector<Pose> poses = PrescribedAt(recording, EpisodeTime(0));
+  for (std::size_t i = 0; i < std::min(poses.size(), recording.obstacles.size()); ++i) {
+    bool was_seen = false;
+    for (const record::ObservationRecord& scan : recording.observations) {
+      if (was_seen && scan.t > t) break;
+      for (const record::SeenObject& object : scan.objects) {
+        if (object.id != recording.obstacles[i]) continue;
+        poses[i] = object.X_WO;
+        was_seen = true;
+      }
+    }
+  }
+  return poses;
+}
+
 template <typename Sample>
 EpisodeTime TimeOfSample(const Sample& sample) {
   return sample.t;
@@ -60,7 +77,10 @@ Pose PoseAt(const std::vector<EpisodeTime>& times, const std::vector<Pose>& pose
 }
 
 std::vector<Pose> ObstaclesAt(const record::Recording& recording, EpisodeTime t) {
-  if (recording.truth.empty()) return PrescribedAt(recording, t);
+  if (recording.truth.empty()) {
+    const bool is_seen = recording.header.contains("camera");
+    return is_seen ? SeenAt(recording, t) : PrescribedAt(recording, t);
+  }
   std::vector<Pose> poses;
   const Position at = Locate(recording.truth, t, TimeOfSample<TruthSample>);
   const std::vector<Pose>& before = recording.truth[at.before].X_WO;

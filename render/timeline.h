@@ -20,8 +20,9 @@ Eigen::VectorXd JointsAt(const record::Recording& recording, EpisodeTime t);
 /// rate. `times` increase and are as many as `poses`, at least one.
 Pose PoseAt(const std::vector<EpisodeTime>& times, const std::vector<Pose>& poses, EpisodeTime t);
 
-/// X_WO of each obstacle: as it truly was; where nobody knows that, as on hardware, as the recorded
-/// scenario prescribes it.
+/// X_WO of each obstacle: as it truly was; where nobody knows that, as on hardware, as its camera
+/// saw it the last time (before, the first time), or, of virtual ones, as the recorded scenario
+/// prescribes it.
 std::vector<Pose> ObstaclesAt(const record::Recording& recording, EpisodeTime t);
 
 /// How fast the fastest obstacle moves [m/s].

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -144,6 +145,8 @@ struct Safety {
   SafetyProfile profile = SafetyProfile::kOff;
   double obstacle_speed_m_s = 0.5;  ///< what obstacles are declared to do
   double obstacle_acceleration_m_s2 = 2;
+  /// What the tool is kept below; infinite: only what the joints' limits leave.
+  double tool_speed_m_s = std::numeric_limits<double>::infinity();
 };
 
 /// How the planner knows what never moves.

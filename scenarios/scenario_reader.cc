@@ -473,6 +473,7 @@ void ReadSafety(const YamlReader& top, Scenario& scenario) {
   };
   bounded("obstacle_speed_m_s", safety.obstacle_speed_m_s, 100);
   bounded("obstacle_acceleration_m_s2", safety.obstacle_acceleration_m_s2, 1000);
+  bounded("tool_speed_m_s", safety.tool_speed_m_s, 100);
   map.CheckNoUnknownKeys();
 }
 

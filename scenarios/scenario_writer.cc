@@ -172,6 +172,9 @@ std::string PlannerText(const Scenario& scenario) {
          "}\nsafety: {profile: " + ToString(scenario.safety.profile) +
          ", obstacle_speed_m_s: " + Number(scenario.safety.obstacle_speed_m_s) +
          ", obstacle_acceleration_m_s2: " + Number(scenario.safety.obstacle_acceleration_m_s2) +
+         (std::isfinite(scenario.safety.tool_speed_m_s)
+              ? ", tool_speed_m_s: " + Number(scenario.safety.tool_speed_m_s)
+              : "") +
          "}\n";
 }
 

@@ -57,7 +57,8 @@ Pose TagPose(const Eigen::Vector3d& box_size_m, const std::string& face) {
   R_OT.col(2) = -axes.outward;
   R_OT.col(1) = -axes.up;
   R_OT.col(0) = R_OT.col(1).cross(R_OT.col(2));
-  return {Eigen::Quaterniond(R_OT), axes.outward.cwiseProduct(box_size_m) / 2};
+  const double out_m = axes.outward.cwiseAbs().dot(box_size_m) / 2 + kTagPaper_m;
+  return {Eigen::Quaterniond(R_OT), out_m * axes.outward};
 }
 
 std::array<bool, kTagModules * kTagModules> BlackModules(int id) {

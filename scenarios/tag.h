@@ -28,8 +28,11 @@ inline constexpr int kTagModules = 10;
 /// The edge of the whole print, with its white rim, to that of the black square.
 inline constexpr double kTagPrint = 1.25;
 
-/// The pose X_OT of a tag on a box: x to the right of the print, y down, z into the box. Up is +z
-/// of the box or, on the faces of z, its +x.
+/// It stands out from its face by so much, the thickness of paper.
+inline constexpr double kTagPaper_m = 1e-4;
+
+/// The pose X_OT of a tag on a box, in the plane of its ink: x to the right of the print, y down, z
+/// into the box. Up is +z of the box or, on the faces of z, its +x.
 Pose TagPose(const Eigen::Vector3d& box_size_m, const std::string& face);
 
 /// Which modules of a tag are black, row by row from the upper left.

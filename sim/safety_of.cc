@@ -21,6 +21,7 @@ control::SafetySettings SafetyOf(const scenarios::Scenario& scenario,
   }
   safety.obstacle_speed_m_s = scenario.safety.obstacle_speed_m_s;
   safety.obstacle_acceleration_m_s2 = scenario.safety.obstacle_acceleration_m_s2;
+  safety.tool_speed_m_s = scenario.safety.tool_speed_m_s;
   safety.floor_m = scenario.floor_m;
   return safety;
 }

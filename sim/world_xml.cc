@@ -242,13 +242,13 @@ void AddTagMaterials(const scenarios::Scenario& scenario, XMLElement* asset) {
   }
 }
 
-// A rectangle in a tag's frame, edges [m], whose outer side is `before_m` before the face.
+// A rectangle in a tag's frame, edges [m], whose outer side is `behind_m` behind the tag's plane.
 void AddPrint(const Pose& X_OT, const Eigen::Vector2d& center_m, const Eigen::Vector2d& edges_m,
-              double before_m, const char* material, XMLElement* body) {
+              double behind_m, const char* material, XMLElement* body) {
   constexpr double kThick_m = 5e-4;
   XMLElement* geom = Append(body, "geom", {{"type", "box"}});
   Set(geom, "size", ToText(Eigen::Vector3d(edges_m.x() / 2, edges_m.y() / 2, kThick_m / 2)));
-  const Eigen::Vector3d p_TG(center_m.x(), center_m.y(), kThick_m / 2 - before_m);
+  const Eigen::Vector3d p_TG(center_m.x(), center_m.y(), kThick_m / 2 + behind_m);
   SetPose(geom, X_OT * Pose::Translation(p_TG));
   Set(geom, "material", material);
   Set(geom, "contype", "0");
@@ -260,7 +260,14 @@ void AddTag(const scenarios::Tag& tag, const Eigen::Vector3d& box_size_m, XMLEle
   constexpr int n = scenarios::kTagModules;
   const Pose X_OT = scenarios::TagPose(box_size_m, tag.face);
   const double print_m = scenarios::kTagPrint * tag.size_m, module_m = print_m / n;
-  AddPrint(X_OT, {0, 0}, {print_m, print_m}, 5e-5, kPaperMaterial, body);
+  AddPrint(X_OT, {0, 0}, {print_m, print_m}, scenarios::kTagPaper_m / 2, kPaperMaterial, body);
+  // The white rim is as high as the ink: from aside, the black square would else show a side, and
+  // its edges be seen where they are not.
+  for (const double side : {-1.0, 1.0}) {
+    const double rim_m = side * (n - 1) / 2.0 * module_m;
+    AddPrint(X_OT, {rim_m, 0}, {module_m, print_m}, 0, kPaperMaterial, body);
+    AddPrint(X_OT, {0, rim_m}, {print_m - 2 * module_m, module_m}, 0, kPaperMaterial, body);
+  }
   const auto black = scenarios::BlackModules(tag.id);
   for (int y = 0; y < n; ++y) {
     for (int x = 0; x < n; ++x) {  // runs of black
@@ -271,7 +278,7 @@ void AddTag(const scenarios::Tag& tag, const Eigen::Vector3d& box_size_m, XMLEle
       while (is_black(end)) ++end;
       if (end == x) continue;
       const Eigen::Vector2d center((x + end - n) / 2.0, y + 0.5 - n / 2.0);
-      AddPrint(X_OT, module_m * center, {module_m * (end - x), module_m}, 1e-4, kInkMaterial, body);
+      AddPrint(X_OT, module_m * center, {module_m * (end - x), module_m}, 0, kInkMaterial, body);
       x = end;
     }
   }

@@ -150,9 +150,9 @@ std::vector<ValidationCase> ValidationMatrix(const scenarios::Scenario& scenario
   return Matrix(scenario, draws, with_wire).Make();
 }
 
-std::vector<ValidationCase> SoakCases(const scenarios::Scenario& scenario, int count) {
+std::vector<ValidationCase> SoakCases(const scenarios::Scenario& scenario, int first, int last) {
   std::vector<ValidationCase> cases;
-  for (int draw = 1; draw <= count; ++draw) {
+  for (int draw = first; draw <= last; ++draw) {
     ValidationCase one;
     one.group = kSoak;
     one.behaviour = "random";

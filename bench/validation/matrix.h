@@ -14,7 +14,7 @@ namespace sidestep::bench {
 std::vector<ValidationCase> ValidationMatrix(const scenarios::Scenario& scenario, int draws,
                                              bool with_wire);
 
-/// Episodes within the envelope, at random.
-std::vector<ValidationCase> SoakCases(const scenarios::Scenario& scenario, int count);
+/// Episodes within the envelope, at random: the draws from `first` to `last`.
+std::vector<ValidationCase> SoakCases(const scenarios::Scenario& scenario, int first, int last);
 
 }  // namespace sidestep::bench

@@ -11,6 +11,7 @@
 #include "sidestep/bench/study_page.h"
 #include "sidestep/bench/validation/support.h"
 #include "sidestep/core/csv.h"
+#include "sidestep/core/input_error.h"
 
 namespace sidestep::bench {
 namespace {
@@ -137,6 +138,7 @@ std::string ValidationJson(const ValidationTitle& title, const std::vector<Judge
   json["scenario"] = title.scenario;
   json["sensor"] = title.sensor;
   json["command"] = title.command;
+  json["subject"] = title.subject;
   json["verdict"] = HasFailed(items) ? "fail" : "pass";
   json["episodes"] = rows.size();
   json["episodes_asked"] = title.num_cases;
@@ -187,6 +189,34 @@ std::string ValidationCsv(const std::vector<StudyRow>& rows) {
     csv.AddRow(fields);
   }
   return csv.text();
+}
+
+std::vector<StudyRow> ReadValidationCsv(const std::string& path) {
+  const CsvFile file = ReadCsv(path);
+  const Factors factors = FactorsOf(ValidationCase());
+  for (const char* const column : {"case", "outcome", "error", "command"}) {
+    if (std::find(file.columns.begin(), file.columns.end(), column) != file.columns.end()) continue;
+    throw InputError(path, 1, "header", std::string("has no column '") + column + "'");
+  }
+  std::vector<StudyRow> rows;
+  for (const CsvRow& line : file.rows) {
+    StudyRow& row = rows.emplace_back();
+    for (std::size_t i = 0; i < file.columns.size(); ++i) {
+      const std::string &column = file.columns[i], &field = line.fields[i];
+      if (factors.contains(column)) {
+        row.factors[column] = field;
+      } else if (column == "outcome") {
+        row.outcome = field;
+      } else if (column == "error") {
+        row.error = field;
+      } else if (column == "command") {
+        row.command = field;
+      } else if (!field.empty()) {
+        row.metrics[column] = ParseCsvNumber(field, path, line.line, column);
+      }
+    }
+  }
+  return rows;
 }
 
 }  // namespace sidestep::bench

@@ -16,6 +16,8 @@ struct ValidationTitle {
   std::string command;            ///< what makes the report, quoted for a shell
   int num_cases = 0;              ///< that were to be run
   std::map<std::string, std::string> versions;
+  /// RunId of the scenario as asked for: of its text, the robot and the program.
+  std::string subject = {};
 };
 
 /// How many items fail, pass and were not run, in a line.
@@ -35,5 +37,7 @@ std::string ValidationJson(const ValidationTitle& title, const std::vector<Judge
                            const std::vector<StudyRow>& rows);
 /// All rows, with a column for each factor and each fact.
 std::string ValidationCsv(const std::vector<StudyRow>& rows);
+/// The rows of such a file. @throws InputError FILE:LINE: WHY.
+std::vector<StudyRow> ReadValidationCsv(const std::string& path);
 
 }  // namespace sidestep::bench

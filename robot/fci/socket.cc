@@ -85,8 +85,8 @@ bool WaitToRead(const std::vector<int>& descriptors, std::chrono::microseconds a
   return ppoll(waiting.data(), waiting.size(), &time, nullptr) > 0;
 }
 
-CommandLink CommandLink::Connect(const std::string& address, std::uint16_t port,
-                                 std::chrono::milliseconds at_most) {
+ByteStream ByteStream::Connect(const std::string& address, std::uint16_t port,
+                               std::chrono::milliseconds at_most) {
   Descriptor socket = MakeSocket(SOCK_STREAM);
   const sockaddr_in where = SocketAddress(address, port);
   int error = 0;
@@ -102,14 +102,10 @@ CommandLink CommandLink::Connect(const std::string& address, std::uint16_t port,
   }
   if (error != 0) throw LinkError(Endpoint(address, port) + ": " + std::strerror(error));
   SetOption(socket, IPPROTO_TCP, TCP_NODELAY, 1);
-  return CommandLink(std::move(socket), address);
+  return {std::move(socket), address};
 }
 
-void CommandLink::Send(const Message& message) {
-  const Header header{message.request, message.id,
-                      static_cast<std::uint32_t>(sizeof(Header) + message.payload.size())};
-  Bytes bytes = ToBytes(header);
-  bytes.insert(bytes.end(), message.payload.begin(), message.payload.end());
+void ByteStream::Send(const Bytes& bytes) {
   std::size_t sent = 0;
   while (sent < bytes.size()) {
     const ssize_t count =
@@ -124,6 +120,29 @@ void CommandLink::Send(const Message& message) {
       throw LinkClosed("the connection is closed: " + Reason());
     }
   }
+}
+
+bool ByteStream::Receive(Bytes* bytes) {
+  std::array<std::uint8_t, 1 << 16> buffer;
+  for (;;) {
+    const ssize_t count = recv(socket_.get(), buffer.data(), buffer.size(), 0);
+    if (count > 0) {
+      bytes->insert(bytes->end(), buffer.begin(), buffer.begin() + count);
+      return true;
+    }
+    if (count == 0) throw LinkClosed("the peer has closed the connection");
+    if (errno == EAGAIN) return false;
+    if (errno != EINTR) throw LinkClosed("the connection is closed: " + Reason());
+  }
+}
+
+void CommandLink::Send(const Message& message) {
+  const Header header{message.request, message.id,
+                      static_cast<std::uint32_t>(sizeof(Header) + message.payload.size())};
+  Bytes bytes(header.size);
+  std::memcpy(bytes.data(), &header, sizeof(Header));
+  std::copy(message.payload.begin(), message.payload.end(), bytes.begin() + sizeof(Header));
+  stream_.Send(bytes);
 }
 
 std::optional<Message> CommandLink::Receive() {
@@ -143,17 +162,7 @@ std::optional<Message> CommandLink::Receive() {
         return message;
       }
     }
-    std::array<std::uint8_t, 4096> buffer;
-    const ssize_t count = recv(socket_.get(), buffer.data(), buffer.size(), 0);
-    if (count > 0) {
-      pending_.insert(pending_.end(), buffer.begin(), buffer.begin() + count);
-    } else if (count == 0) {
-      throw LinkClosed("the peer has closed the connection");
-    } else if (errno == EAGAIN) {
-      return std::nullopt;
-    } else if (errno != EINTR) {
-      throw LinkClosed("the connection is closed: " + Reason());
-    }
+    if (!stream_.Receive(&pending_)) return std::nullopt;
   }
 }
 
@@ -164,14 +173,14 @@ Listener::Listener(const std::string& address, std::uint16_t port)
   if (listen(socket_.get(), 1) != 0) throw LinkError(Endpoint(address, port) + ": " + Reason());
 }
 
-std::optional<CommandLink> Listener::Accept() {
+std::optional<ByteStream> Listener::Accept() {
   sockaddr_in from{};
   socklen_t size = sizeof(from);
   Descriptor socket(accept4(socket_.get(), reinterpret_cast<sockaddr*>(&from), &size,
                             SOCK_NONBLOCK | SOCK_CLOEXEC));
   if (!socket.is_open()) return std::nullopt;
   SetOption(socket, IPPROTO_TCP, TCP_NODELAY, 1);
-  return CommandLink(std::move(socket), AddressText(from));
+  return ByteStream(std::move(socket), AddressText(from));
 }
 
 DatagramPort::DatagramPort(const std::string& address) : socket_(MakeSocket(SOCK_DGRAM)) {

@@ -41,17 +41,41 @@ class Descriptor {
 /// Waits until one of them can be read, or the time is over. @return whether one can be.
 bool WaitToRead(const std::vector<int>& descriptors, std::chrono::microseconds at_most);
 
+/// A TCP connection: bytes, in order.
+class ByteStream {
+ public:
+  /// @throws LinkError.
+  static ByteStream Connect(const std::string& address, std::uint16_t port,
+                            std::chrono::milliseconds at_most);
+  ByteStream(Descriptor socket, std::string peer_address)
+      : socket_(std::move(socket)), peer_address_(std::move(peer_address)) {}
+
+  int fd() const { return socket_.get(); }
+  const std::string& peer_address() const { return peer_address_; }
+
+  /// All of them. @throws LinkClosed, also if the peer takes none for a second.
+  void Send(const Bytes& bytes);
+  /// Appends some that have arrived; does not wait. @return whether there were any.
+  /// @throws LinkClosed.
+  bool Receive(Bytes* bytes);
+
+ private:
+  Descriptor socket_;
+  std::string peer_address_;
+};
+
 /// The TCP channel: whole messages of the protocol.
 class CommandLink {
  public:
   /// @throws LinkError.
   static CommandLink Connect(const std::string& address, std::uint16_t port,
-                             std::chrono::milliseconds at_most);
-  explicit CommandLink(Descriptor socket, std::string peer_address)
-      : socket_(std::move(socket)), peer_address_(std::move(peer_address)) {}
+                             std::chrono::milliseconds at_most) {
+    return CommandLink(ByteStream::Connect(address, port, at_most));
+  }
+  explicit CommandLink(ByteStream stream) : stream_(std::move(stream)) {}
 
-  int fd() const { return socket_.get(); }
-  const std::string& peer_address() const { return peer_address_; }
+  int fd() const { return stream_.fd(); }
+  const std::string& peer_address() const { return stream_.peer_address(); }
 
   /// @throws LinkClosed.
   void Send(const Message& message);
@@ -60,8 +84,7 @@ class CommandLink {
   std::optional<Message> Receive();
 
  private:
-  Descriptor socket_;
-  std::string peer_address_;
+  ByteStream stream_;
   Bytes pending_;  ///< received, not yet a whole message
 };
 
@@ -73,7 +96,7 @@ class Listener {
 
   int fd() const { return socket_.get(); }
   /// The next client, if there is one; does not wait.
-  std::optional<CommandLink> Accept();
+  std::optional<ByteStream> Accept();
 
  private:
   Descriptor socket_;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <thread>
 #include <utility>
+#include <vector>
 
 namespace sidestep::sim::fci {
 namespace {
@@ -22,11 +23,13 @@ constexpr microseconds kAskAgain(50000);  // how long to wait without a look at 
 // One client, from its Connect to its end.
 class Session {
  public:
+  /// @param frames null: nothing is shown.
   /// @param turn_away the clients that wait at `door`.
-  Session(SimulatedPanda& panda, const ServerOptions& options, CommandLink link, int door,
-          std::function<void()> turn_away)
+  Session(SimulatedPanda& panda, const ServerOptions& options, FrameServer* frames,
+          CommandLink link, int door, std::function<void()> turn_away)
       : panda_(panda),
         options_(options),
+        frames_(frames),
         link_(std::move(link)),
         states_(options.address),
         door_(door),
@@ -49,6 +52,7 @@ class Session {
 
   SimulatedPanda& panda_;
   const ServerOptions& options_;
+  FrameServer* const frames_;
   CommandLink link_;
   DatagramPort states_;
   int door_;
@@ -83,6 +87,7 @@ std::string Session::Connect(const std::function<bool()>& stop) {
 }
 
 void Session::HandleRequests() {
+  if (frames_ != nullptr) frames_->Answer();
   while (const auto request = link_.Receive()) {
     const auto reply = panda_.Handle(*request);
     if (reply) link_.Send(*reply);
@@ -126,7 +131,11 @@ std::optional<RobotCommand> Session::AwaitAnswer(Clock::time_point until) {
     if (auto answer = ReceiveAnswer()) return answer;
     const auto left = std::chrono::duration_cast<microseconds>(until - Clock::now());
     if (left.count() <= 0) return std::nullopt;
-    robot::fci::WaitToRead({link_.fd(), states_.fd()}, left);
+    std::vector<int> descriptors = {link_.fd(), states_.fd()};
+    if (frames_ != nullptr) {
+      for (const int descriptor : frames_->descriptors()) descriptors.push_back(descriptor);
+    }
+    robot::fci::WaitToRead(descriptors, left);
   }
 }
 
@@ -222,13 +231,15 @@ void Server::Tell(const std::string& what) const {
 void Server::Serve(CommandLink link, const std::function<bool()>& stop) {
   Tell("connected from " + link.peer_address());
   try {
-    Session session(panda_, options_, std::move(link), listener_.fd(), [this] { TurnAway(); });
+    Session session(panda_, options_, frames_, std::move(link), listener_.fd(),
+                    [this] { TurnAway(); });
     const std::string refusal = session.Connect(stop);
     if (!refusal.empty()) {
       Tell("client refused: " + refusal);
       return;
     }
     panda_.BeginAnew();
+    if (frames_ != nullptr) frames_->SendAway();
     session.Run(stop);
   } catch (const robot::fci::LinkError& error) {
     Tell(std::string("disconnected: ") + error.what());
@@ -250,7 +261,11 @@ void Server::TurnAway() {
 std::optional<CommandLink> Server::AwaitClient() {
   const auto begin = Clock::now();
   for (std::int64_t ticks = 0; Clock::now() - begin < kAskAgain;) {
-    if (robot::fci::WaitToRead({listener_.fd()}, kMillisecond)) return listener_.Accept();
+    if (robot::fci::WaitToRead({listener_.fd()}, kMillisecond)) {
+      auto stream = listener_.Accept();
+      if (!stream) return std::nullopt;
+      return CommandLink(std::move(*stream));
+    }
     for (; ticks < (Clock::now() - begin) / kMillisecond; ++ticks) panda_.Tick(std::nullopt);
   }
   return std::nullopt;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "sidestep/robot/fci/socket.h"
+#include "sidestep/sim/fci/frame_server.h"
 #include "sidestep/sim/fci/simulated_panda.h"
 
 namespace sidestep::sim::fci {
@@ -35,6 +36,10 @@ class Server {
 
   void TellWith(std::function<void(const std::string&)> tell) { tell_ = std::move(tell); }
 
+  /// Shows what a camera sees as well. In lock-step alone: to take a picture takes longer than a
+  /// tick. @param frames must outlive this.
+  void Show(FrameServer* frames) { frames_ = frames; }
+
   /// Serves until `stop` is true, which is asked every 50 ms or so, or after the first client if
   /// options say so. @throws SimulationError.
   void Run(const std::function<bool()>& stop);
@@ -49,6 +54,7 @@ class Server {
   ServerOptions options_;
   robot::fci::Listener listener_;
   std::function<void(const std::string&)> tell_;
+  FrameServer* frames_ = nullptr;
 };
 
 }  // namespace sidestep::sim::fci

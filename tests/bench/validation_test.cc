@@ -24,7 +24,10 @@
 #include "sidestep/bench/validation/protective_distance.h"
 #include "sidestep/bench/validation/report.h"
 #include "sidestep/bench/validation/timing.h"
+#include "sidestep/core/atomic_file.h"
+#include "sidestep/core/input_error.h"
 #include "tests/support/bytes_of.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sidestep::bench {
 namespace {
@@ -360,7 +363,8 @@ std::vector<Verdict> Verdicts() {
        "NoDifference",
        {Pair("prediction", 1, 0.1, 10), Pair("execute_and_update", 1, 0.1, 10)},
        kFail},
-      {19, "Long", {touch(validation_group::kSoak, 0)}, kPass},
+      {19, "Long", std::vector<Row>(2000, touch(validation_group::kSoak, 0)), kPass},
+      {19, "TooShort", {touch(validation_group::kSoak, 0)}, ItemVerdict::kNotRun},
       {19, "Touched", {touch(validation_group::kSoak, 1)}, kFail},
       {20, "Reached", {task(1, 1), task(0, 0)}, kPass},
       {20, "HeldStill", {task(0, 1), task(1, 1)}, kFail},
@@ -472,6 +476,35 @@ TEST(ValidationReport, TellsOfEachFailureHowToRunItAgain) {
   EXPECT_EQ(json["items"][5]["worst"][0]["command"], row.command);
   EXPECT_EQ(json["items"][12]["verdict"], "not run");
   EXPECT_THAT(ValidationCsv(rows), HasSubstr("tool_speed_m_s"));
+}
+
+TEST(ValidationReport, IsReadBackToTheBitToBeGoneOnWith) {
+  std::vector<StudyRow> rows;
+  for (const ValidationCase& one : SoakCases(TheTable().scenario, 501, 503)) {
+    StudyRow& row = rows.emplace_back();
+    row.factors = FactorsOf(one);
+    row.outcome = "collision";
+    row.error = "a, \"b\"";
+    row.metrics = {{"torque_use", 0.1 + 0.2 * one.draw}};
+    if (one.draw == 502) row.metrics["only_here"] = 1e-300;
+    row.command = "sidestep validate gpmp --soak " + std::to_string(one.draw);
+  }
+  const TemporaryFolder folder;
+  const std::string path = (folder.path() / "validation.csv").string();
+  WriteFile(path, ValidationCsv(rows));
+  const std::vector<StudyRow> read = ReadValidationCsv(path);
+  ASSERT_EQ(read.size(), rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(read[i].factors, rows[i].factors);
+    EXPECT_EQ(read[i].outcome, rows[i].outcome);
+    EXPECT_EQ(read[i].error, rows[i].error);
+    EXPECT_EQ(read[i].metrics, rows[i].metrics);
+    EXPECT_EQ(read[i].command, rows[i].command);
+  }
+  WriteFile(path, "case,outcome,error\n");
+  EXPECT_THAT(
+      [&] { ReadValidationCsv(path); },
+      ::testing::ThrowsMessage<InputError>(HasSubstr("1: header: has no column 'command'")));
 }
 
 // What cannot be validated.

@@ -321,6 +321,47 @@ TEST(Supervisor, SlowsBeforeItHasToStop) {
   EXPECT_GT(scene.follower().lag().seconds(), 0.1);
 }
 
+// How fast the tool is at most until `t_s`, by where each command puts it.
+double FastestTool_m_s(Scene& scene, double t_s) {
+  const robot::RobotModel panda = Panda();
+  Vector3d last_m = panda.ComputeToolPose(scene.state().q).translation();
+  double fastest_m_s = 0;
+  for (int tick = 1; tick <= std::lround(t_s / kTick_s); ++tick) {
+    scene.RunTo(tick * kTick_s);
+    const Vector3d next_m = panda.ComputeToolPose(scene.state().q).translation();
+    fastest_m_s = std::max(fastest_m_s, (next_m - last_m).norm() / kTick_s);
+    last_m = next_m;
+  }
+  return fastest_m_s;
+}
+
+TEST(Supervisor, KeepsTheToolBelowItsSpeedAndFollowsThePlanOn) {
+  Scene as_planned;
+  const double planned_m_s = FastestTool_m_s(as_planned, 4);
+  for (const double share : {0.9, 0.5, 0.2}) {
+    SafetySettings settings = Lab();
+    settings.tool_speed_m_s = share * planned_m_s;
+    Scene scene(settings);
+    const double fastest_m_s = FastestTool_m_s(scene, 4);
+    EXPECT_LE(fastest_m_s, settings.tool_speed_m_s) << share;
+    EXPECT_GT(fastest_m_s, 0.9 * settings.tool_speed_m_s) << share << ": slower than it has to be";
+    EXPECT_NE(scene.First(SafetyCheck::kToolSpeed, Reaction::kSlow), nullptr);
+    EXPECT_EQ(scene.First(SafetyCheck::kToolSpeed, Reaction::kHold), nullptr);
+    EXPECT_EQ(scene.mode(), robot::RobotMode::kMoving);
+    EXPECT_GT(scene.follower().lag().seconds(), 0.01);
+  }
+}
+
+TEST(Supervisor, WritesDownAToolThatWouldBeTooFastWhenItObserves) {
+  SafetySettings settings = Lab();
+  settings.profile = SafetyProfile::kObserve;
+  settings.tool_speed_m_s = 0.1;
+  Scene scene(settings);
+  EXPECT_GT(FastestTool_m_s(scene, 2), 0.2);
+  EXPECT_NE(scene.First(SafetyCheck::kToolSpeed, Reaction::kHold), nullptr);
+  EXPECT_EQ(scene.follower().lag().seconds(), 0);
+}
+
 // Balls from all sides, at the arm, within what was declared: they change their velocity as hard as
 // they may, at random. The arm may be touched at rest, never in motion.
 TEST(Supervisor, IsAtRestBeforeAnythingWithinTheEnvelopeTouchesIt) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <numbers>
 #include <string>
@@ -13,7 +14,9 @@
 #include "sidestep/hardware/camera_calibration.h"
 #include "sidestep/hardware/recorded_frames.h"
 #include "sidestep/robot/robot_model.h"
+#include "tests/hardware/own_loopback.h"
 #include "tests/hardware/posed_tags.h"
+#include "tests/support/bytes_of.h"
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
@@ -103,6 +106,113 @@ TEST_F(Calibrate, FindsWhereARenderedCameraStands) {
   const Finished other = Run("6");
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_EQ(other.err, "views: show the tag 0 times, needed are 20\n");
+}
+
+// A robot that stands, before a camera that sees a box a metre away.
+class LookAround : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!hardware::CanFindTags()) GTEST_SKIP() << "built without libapriltag and OpenCV";
+  }
+
+  // Pictures at 30 Hz of a box like that of the laboratory, in which it drifts.
+  void Record() const {
+    const std::string pictures = In("pictures");
+    std::filesystem::create_directory(pictures);
+    constexpr int kCount = 10;
+    std::vector<Pose> X_CO;
+    for (int k = 0; k < kCount; ++k) {
+      X_CO.push_back(Pose::FromRollPitchYaw({1.9, 0.5, 0.2}, {0.01 * k, 0, 1.1}));
+    }
+    PosedTags scene(X_CO, {0.20, 0.25, 0.35},
+                    "[{face: +x, id: 0, size_m: 0.16}, {face: -x, id: 1, size_m: 0.16}, {face: +y, "
+                    "id: 2, size_m: 0.16}, {face: -y, id: 3, size_m: 0.16}, {face: +z, id: 4, "
+                    "size_m: 0.16}]");
+    hardware::FrameRecorder recorder(pictures);
+    for (int k = 0; k < kCount; ++k) {
+      robot::Frame frame = scene.Take();
+      frame.t = EpisodeTime(k / 30.0);
+      recorder.Add(frame);
+    }
+    recorder.Finish();
+  }
+
+  std::string In(const std::string& name) const { return (folder_.path() / name).string(); }
+  Finished Run(const std::string& command, const std::vector<std::string>& further) const {
+    std::vector<std::string> words = {SIDESTEP_PROGRAM, "hardware", command};
+    words.insert(words.end(), further.begin(), further.end());
+    return RunProgram(words, {"XDG_STATE_HOME=" + In("state")});
+  }
+  Finished Look(const std::vector<std::string>& further) const {
+    std::vector<std::string> words = {"hardware_single_table", "--set",
+                                      "seen_by=camera",        "--robot",
+                                      hardware::OwnLoopback(), "--dry-run"};
+    words.insert(words.end(), further.begin(), further.end());
+    return Run("run", words);
+  }
+
+  const TemporaryFolder folder_;
+};
+
+TEST_F(LookAround, LeavesWhatWasSeenAndPlannedAndTheSameIsFoundAgain) {
+  Record();
+  Running server({SIDESTEP_PROGRAM, "fci-server", "--address", hardware::OwnLoopback(),
+                  "--scenario", "hardware_single_table"});
+  ASSERT_TRUE(server.Prints("Ctrl-C ends it"));
+  const Finished looked = Look({"--camera", "recorded:" + In("pictures"), "--out", In("look")});
+  ASSERT_EQ(looked.exit_code, 0) << looked.err;
+  EXPECT_THAT(looked.out,
+              ::testing::HasSubstr("pictures         10, something that is followed in 8"))
+      << "a track begins with the third";
+  EXPECT_THAT(looked.out, ::testing::HasSubstr("none was followed"));
+  EXPECT_THAT(server.out(), ::testing::Not(::testing::HasSubstr("motion")));
+  for (const char* const file : {"dry_run.mp4", "trace.h5", "result.json", "camera/seen.csv"}) {
+    EXPECT_GT(std::filesystem::file_size(folder_.path() / "look" / file), 500u) << file;
+  }
+
+  const Finished same = Run("replay", {In("look"), "--out", In("again")});
+  EXPECT_EQ(same.exit_code, 0) << same.err;
+  EXPECT_THAT(same.out, ::testing::HasSubstr("the same as when they were taken, to the bit"));
+  EXPECT_EQ(BytesOf(folder_.path() / "look/dry_run.mp4"),
+            BytesOf(folder_.path() / "again/dry_run.mp4"));
+
+  // Another picture in the place of one.
+  std::filesystem::copy_file(In("look/camera/000002.pgm"), In("look/camera/000006.pgm"),
+                             std::filesystem::copy_options::overwrite_existing);
+  const Finished other = Run("replay", {In("look")});
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_THAT(other.out,
+              ::testing::HasSubstr("something else than when they were taken, from line"));
+}
+
+TEST_F(LookAround, IsRefusedInOneLineWhereItCannotBe) {
+  const struct {
+    std::vector<std::string> arguments;
+    std::string says;
+  } cases[] = {
+      {{"--camera", "film"}, "--camera: must be virtual, server, recorded:DIR or realsense:SERIAL"},
+      {{"--camera", "recorded:nowhere"}, "no such file"},
+      {{"--camera", "server"},
+       "--camera: the server's world stands still as long as its robot does"},
+      {{"--camera", "realsense:1234"}, "--camera: "},
+  };
+  Running server({SIDESTEP_PROGRAM, "fci-server", "--address", hardware::OwnLoopback(),
+                  "--scenario", "hardware_single_table"});
+  ASSERT_TRUE(server.Prints("Ctrl-C ends it"));
+  for (const auto& [arguments, says] : cases) {
+    const Finished finished = Look(arguments);
+    EXPECT_EQ(finished.exit_code, 2) << says;
+    EXPECT_THAT(finished.err, ::testing::HasSubstr(says));
+  }
+  EXPECT_EQ(Run("replay", {In("nothing")}).exit_code, 2);
+  const Finished seen_otherwise =
+      Run("run", {"hardware_single_table", "--robot", hardware::OwnLoopback(), "--camera", "server",
+                  "--clock", "lockstep"});
+  EXPECT_EQ(seen_otherwise.err,
+            "--camera: is of a camera: the sensor is 'occupancy', not tag_images\n");
+  const Finished wall = Run("run", {"hardware_single_table", "--set", "seen_by=camera", "--robot",
+                                    hardware::OwnLoopback(), "--camera", "server"});
+  EXPECT_EQ(wall.err, "--camera: the server shows pictures in lock-step alone\n");
 }
 
 }  // namespace

@@ -53,15 +53,24 @@ std::vector<TagDetection> Seen(const TaggedBody& body, const Pose& X_CO) {
   return seen;
 }
 
-// Moves both ends of each edge across it by normal errors; corners are where edges meet.
+// Looks for each edge of a tag at places along it, where it errs by so much, and lays a line
+// through them, as the detector does; corners are where lines meet.
 void Disturb(double sigma_px, RandomStream& random, TagDetection* tag) {
   Eigen::Matrix<double, 4, 3> lines;  // unit normal, and its product with the line's points
   for (int k = 0; k < 4; ++k) {
     const Eigen::Vector2d from = tag->corners_px.col(k), to = tag->corners_px.col((k + 1) % 4);
     const Eigen::Vector2d across =
         Eigen::Vector2d(to.y() - from.y(), from.x() - to.x()).normalized();
-    const Eigen::Vector2d begin = from + sigma_px * random.Normal() * across;
-    const Eigen::Vector2d along = to + sigma_px * random.Normal() * across - begin;
+    const int n = std::max(16, static_cast<int>((to - from).norm() / 8));
+    double sum = 0, turn = 0, squares = 0;  // of the errors, with and by their places
+    for (int i = 1; i <= n; ++i) {
+      const double place = i / (n + 1.0) - 0.5, off_px = sigma_px * random.Normal();
+      sum += off_px;
+      turn += place * off_px;
+      squares += place * place;
+    }
+    const Eigen::Vector2d begin = from + (sum / n - turn / squares / 2) * across;
+    const Eigen::Vector2d along = to + (sum / n + turn / squares / 2) * across - begin;
     const Eigen::Vector2d normal = Eigen::Vector2d(along.y(), -along.x()).normalized();
     lines.row(k) << normal.transpose(), normal.dot(begin);
   }
@@ -124,14 +133,7 @@ TEST_F(BodyPose, HasErrorsOfItsCovariance) {
     const Pose X_CO = PoseBefore(random);
     std::vector<TagDetection> seen = Seen(body, X_CO);
     for (TagDetection& tag : seen) {
-      Eigen::Matrix<double, 2, 4> corners = tag.corners_px;
-      double area = 0, longest = 0;
-      for (int k = 0; k < 4; ++k) {
-        const Eigen::Vector2d a = corners.col(k), b = corners.col((k + 1) % 4);
-        area += (a.x() * b.y() - a.y() * b.x()) / 2;
-        longest = std::max(longest, (b - a).norm());
-      }
-      Disturb(EdgeSigma(kSigma_px, std::abs(area) / longest, longest), random, &tag);
+      Disturb(kSigma_px, random, &tag);
     }
     const auto pose = LocateBody(Camera(), body, seen, kSigma_px);
     ASSERT_TRUE(pose);

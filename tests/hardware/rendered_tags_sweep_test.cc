@@ -10,6 +10,7 @@
 
 #include "sidestep/core/random.h"
 #include "sidestep/hardware/tag_detector.h"
+#include "sidestep/hardware/tag_sensor.h"
 #include "tests/hardware/posed_tags.h"
 
 namespace sidestep {
@@ -71,7 +72,8 @@ TEST(RenderedTagsSweep, FindsOneOfSixteenCentimetresToTwoMetresAndSixtyDegrees) 
     const robot::Frame frame = scene.Take();
     const auto pose = hardware::LocateBody(frame.camera, scene.body(), detector.Detect(frame.image),
                                            hardware::kEdgeSigma_px);
-    if (!pose) continue;
+    if (!pose || pose->reprojection_px > hardware::TagSensorOptions().most_reprojection_px)
+      continue;
     ++found;
     const Eigen::Vector3d error = pose->X_CO.translation() - scene.X_CO().translation();
     const Eigen::Vector3d sight = scene.X_CO().translation().normalized();
@@ -96,9 +98,8 @@ TEST(RenderedTagsSweep, FindsOneOfSixteenCentimetresToTwoMetresAndSixtyDegrees) 
     EXPECT_LT(along_m, 0.003 * far_m * far_m);
     nees += errors.nees;
   }
-  // Of three errors; a covariance that were half or twice as large would be far from it.
-  EXPECT_GT(nees / found, 1.5);
-  EXPECT_LT(nees / found, 6);
+  // Of three errors: 95 % of a chi-square by its normal approximation.
+  EXPECT_NEAR(nees / found, 3, 1.96 * std::sqrt(2.0 * 3 / found));
 }
 
 }  // namespace

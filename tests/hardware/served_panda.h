@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <string>
 #include <thread>
@@ -14,8 +15,12 @@ namespace sidestep::hardware {
 /// A simulated Panda on the loopback, served by a thread of its own while this lives.
 class ServedPanda {
  public:
+  using MakeCamera = std::function<std::unique_ptr<robot::FrameSource>(const sim::World&)>;
+
+  /// @param camera what it shows of its world; empty: nothing.
   explicit ServedPanda(const std::string& faults = "", sim::fci::ServerOptions options = {},
-                       const scenarios::Scenario& scenario = sim::fci::PandaAlone())
+                       const scenarios::Scenario& scenario = sim::fci::PandaAlone(),
+                       const MakeCamera& camera = {})
       : robot_(robot::RobotModel::Load(kModels, "panda", scenario.X_WB)),
         world_(sim::fci::MakePandaWorld(scenario, robot_, kModels,
                                         robot_.configurations().at("home"))),
@@ -25,6 +30,11 @@ class ServedPanda {
     options.address = OwnLoopback();
     options.version = script.version;
     server_ = std::make_unique<sim::fci::Server>(panda_.get(), options);
+    if (camera) {
+      frames_ = std::make_unique<sim::fci::FrameServer>(options.address, *world_,
+                                                        [this, camera] { return camera(*world_); });
+      server_->Show(frames_.get());
+    }
     thread_ = std::thread([this] { server_->Run([this] { return stop_.load(); }); });
   }
   ~ServedPanda() {
@@ -41,6 +51,7 @@ class ServedPanda {
   std::unique_ptr<sim::World> world_;
   sim::fci::PandaPlant plant_;
   std::unique_ptr<sim::fci::SimulatedPanda> panda_;
+  std::unique_ptr<sim::fci::FrameServer> frames_;
   std::unique_ptr<sim::fci::Server> server_;
   std::atomic<bool> stop_ = false;
   std::thread thread_;

@@ -118,6 +118,8 @@ TEST(Captions, SayWhereTheRobotWasOnHardware) {
   EXPECT_EQ(PlaceOf(recording), "");
   recording.header["robot_at"] = "172.16.0.2";
   EXPECT_EQ(PlaceOf(recording), "robot at 172.16.0.2, obstacles virtual");
+  recording.header["camera"] = "RealSense 1234";
+  EXPECT_EQ(PlaceOf(recording), "robot at 172.16.0.2, obstacles seen by a camera (RealSense 1234)");
   recording.obstacles.clear();
   EXPECT_EQ(PlaceOf(recording), "robot at 172.16.0.2");
 }

@@ -67,6 +67,30 @@ TEST(Timeline, FollowsWhatTheScenarioPrescribesWhereNobodyKnowsTheTruth) {
   EXPECT_NEAR(ObstacleSpeedAt(recording, EpisodeTime(1)), 1.4, 1e-9);
 }
 
+TEST(Timeline, FollowsWhatACameraSawWhereNothingWasPrescribed) {
+  record::Recording recording = MakeSampleRecording({});
+  recording.truth.clear();
+  const scenarios::Scenario walkway =
+      scenarios::LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/hsr_walkway.yaml");
+  recording.scenario_yaml = scenarios::ToYaml(walkway);
+  recording.obstacles = {walkway.moving_obstacles.front().name};
+  recording.header["camera"] = "recorded, 1234";
+  recording.observations.clear();
+  for (const double t_s : {0.5, 0.6, 0.7}) {
+    record::ObservationRecord& scan = recording.observations.emplace_back();
+    scan.t = EpisodeTime(t_s);
+    if (t_s == 0.6) continue;  // not seen
+    scan.objects = {{"another", Pose(), {}},
+                    {recording.obstacles[0], Pose::Translation({t_s, 2, 3}), {}}};
+  }
+  const struct {
+    double t_s, x_m;
+  } cases[] = {{0, 0.5}, {0.5, 0.5}, {0.69, 0.5}, {0.7, 0.7}, {9, 0.7}};
+  for (const auto& [t_s, x_m] : cases) {
+    EXPECT_EQ(ObstaclesAt(recording, EpisodeTime(t_s)).at(0).translation().x(), x_m) << t_s;
+  }
+}
+
 TEST(Timeline, KnowsWhichPlanIsInForce) {
   record::Recording recording = MakeSampleRecording({});
   recording.cycles[3].accepted = false;     // observed at 0.3 s, of effect at 0.35 s

@@ -24,13 +24,14 @@ ItemFinding Judge(const Evidence& evidence) {
   const std::vector<Told> told = LargestFirst(evidence, "tool_speed_m_s", IsWithinEnvelope);
   if (told.empty()) return NothingRun("no episode was run");
   const double most_m_s = told.front().value;
+  const double gate_m_s = std::min(kMost_m_s, evidence.scenario.safety.tool_speed_m_s);
   ItemFinding finding;
-  finding.verdict = most_m_s <= kMost_m_s ? ItemVerdict::kPass : ItemVerdict::kFail;
+  finding.verdict = most_m_s <= gate_m_s ? ItemVerdict::kPass : ItemVerdict::kFail;
   finding.evidence = fmt::format("at most {:.3f} m/s", most_m_s);
   if (most_m_s > kMostAtFirst_m_s && most_m_s <= kMost_m_s) {
     finding.evidence += ": not for the first sessions";
   }
-  finding.worst = WorstOf(told, kMost_m_s, "{:.3f} m/s");
+  finding.worst = WorstOf(told, gate_m_s, "{:.3f} m/s");
   return finding;
 }
 
@@ -39,7 +40,7 @@ ItemFinding Judge(const Evidence& evidence) {
 ValidationItem ToolSpeedItem() {
   return {6,
           "speed of the tool",
-          "at most 0.5 m/s; 0.25 m/s in the first sessions",
+          "at most 0.5 m/s, and safety.tool_speed_m_s; 0.25 m/s in the first sessions",
           "reduced speed of ISO 10218-1: 250 mm/s",
           Measure,
           Judge};

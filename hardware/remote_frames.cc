@@ -1,0 +1,44 @@
+#include "sidestep/hardware/remote_frames.h"
+
+#include <chrono>
+#include <utility>
+
+#include "sidestep/robot/robot_error.h"
+
+namespace sidestep::hardware {
+namespace {
+
+namespace fci = robot::fci;
+
+constexpr std::chrono::seconds kConnectTime(10);
+constexpr std::chrono::seconds kReplyTime(60);  // a picture is drawn meanwhile
+
+}  // namespace
+
+RemoteFrames::RemoteFrames(const std::string& address)
+    : stream_(fci::ByteStream::Connect(address, fci::kFramePort, kConnectTime)),
+      next_due_(Ask(fci::FrameQuestion::kWhen).next_due) {}
+
+std::optional<robot::Frame> RemoteFrames::Read(EpisodeTime) {
+  try {
+    fci::FrameReply reply = Ask(fci::FrameQuestion::kRead);
+    next_due_ = reply.next_due;
+    return std::move(reply.frame);
+  } catch (const fci::LinkError& error) {
+    throw robot::RobotError(std::string("the camera of the robot server: ") + error.what());
+  }
+}
+
+fci::FrameReply RemoteFrames::Ask(fci::FrameQuestion question) {
+  stream_.Send({static_cast<std::uint8_t>(question)});
+  const auto until = std::chrono::steady_clock::now() + kReplyTime;
+  for (;;) {
+    if (auto reply = fci::TakeFrameReply(&received_)) return std::move(*reply);
+    if (stream_.Receive(&received_)) continue;
+    const auto left = until - std::chrono::steady_clock::now();
+    if (left.count() <= 0) throw fci::LinkError("it does not answer");
+    fci::WaitToRead({stream_.fd()}, std::chrono::duration_cast<std::chrono::microseconds>(left));
+  }
+}
+
+}  // namespace sidestep::hardware
