@@ -354,7 +354,7 @@ class Loop {
       budget.deadline = std::chrono::steady_clock::now() +
                         std::chrono::duration_cast<std::chrono::steady_clock::duration>(left);
     } else if (scenario_.most_iterations > 0) {
-      budget.iterations = scenario_.most_iterations;
+      return planner_->BudgetOf(scenario_.most_iterations);
     }
     return budget;
   }

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <exception>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -61,6 +63,14 @@ double Planner::DirectTime_s(const Eigen::VectorXd& q_start, const Eigen::Vector
     }
   }
   return time_s;
+}
+
+PlanBudget Planner::BudgetOf(int work) const {
+  const std::int64_t iterations = std::int64_t{work} * capabilities().iterations_for_one;
+  PlanBudget budget;
+  budget.iterations =
+      static_cast<int>(std::min<std::int64_t>(iterations, std::numeric_limits<int>::max()));
+  return budget;
 }
 
 PlanResult Planner::Plan(const PlanRequest& request) const {

@@ -67,6 +67,9 @@ struct PlannerCapabilities {
   /// Its plans end at rest at the goal, unless they are said to end short of it.
   bool reaches_goal = false;
   bool avoids_obstacles = false;  ///< it looks for a plan that is free
+  /// Work is counted in iterations of `gpmp`: so many of this planner's, or solves begun, take no
+  /// more time than one. A constant, so that budgets are the same on every machine.
+  int iterations_for_one = 1;
 };
 
 /// Request in, result out; no hidden state: equal requests give equal bits, unless the budget goes
@@ -87,6 +90,9 @@ class Planner {
   double DirectTime_s(const Eigen::VectorXd& q_start, const Eigen::VectorXd& q_goal) const;
 
   virtual PlannerCapabilities capabilities() const { return {}; }
+  /// In this planner's iterations, for a loop that gives each planner the same time.
+  /// @param work iterations of `gpmp`, > 0.
+  PlanBudget BudgetOf(int work) const;
   const robot::RobotModel& robot() const { return robot_; }
   /// By which results are judged.
   const ClearanceMeter& clearance_meter() const { return clearance_meter_; }

@@ -196,7 +196,7 @@ struct Scenario {
   double replan_rate_hz = 0;
   Latency latency = Latency::kCharged;
   double latency_s = 0;  ///< charged to each planning cycle; measured: the most it may take
-  /// Of the planner, in each cycle; 0: no end.
+  /// In each cycle, counted as Planner::BudgetOf has it; 0: no end.
   int most_iterations = 0;
   double longest_latency_s() const { return latency == Latency::kNone ? 0 : latency_s; }
 

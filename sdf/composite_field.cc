@@ -1,8 +1,10 @@
 #include "sidestep/sdf/composite_field.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <map>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -62,11 +64,15 @@ CompositeField::CompositeField(std::shared_ptr<const SdfGrid> static_W,
 }
 
 PlacedComposite CompositeField::PlacedAt(EpisodeTime t) const {
-  std::vector<PlacedObject> placed;
-  placed.reserve(objects_.size());
+  // Few find room without asking for memory: slices are made by the hundred.
+  constexpr std::size_t kFew = 4;
+  std::array<PlacedObject, kFew> few;
+  std::vector<PlacedObject> many(objects_.size() > kFew ? objects_.size() : 0);
+  const std::span<PlacedObject> placed =
+      many.empty() ? std::span(few).first(objects_.size()) : std::span(many);
   for (std::size_t n = 0; n < objects_.size(); ++n) {
     const MovingField& object = objects_[n];
-    PlacedObject& at_t = placed.emplace_back();
+    PlacedObject& at_t = placed[n];
     at_t.field_O = object.field_O.get();
     at_t.bound = bounds_[n];
     at_t.X_WO = object.X_WO(t);

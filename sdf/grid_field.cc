@@ -1,5 +1,6 @@
 #include "sidestep/sdf/grid_field.h"
 
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -24,7 +25,8 @@ void GridField::SampleMany(const Eigen::Matrix3Xd& p_WQ, EpisodeTime,
 }
 
 std::unique_ptr<const FieldSlice> GridField::At(EpisodeTime) const {
-  return std::make_unique<PlacedComposite>(*grid_W_, std::vector<PlacedObject>{}, max_distance_m_);
+  return std::make_unique<PlacedComposite>(*grid_W_, std::span<const PlacedObject>(),
+                                           max_distance_m_);
 }
 
 }  // namespace sidestep::sdf

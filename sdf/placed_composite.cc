@@ -66,7 +66,7 @@ FieldBound DomainBound(const SdfGrid& field_O) {
           -std::numeric_limits<double>::infinity()};
 }
 
-PlacedComposite::PlacedComposite(const SdfGrid& static_W, const std::vector<PlacedObject>& objects,
+PlacedComposite::PlacedComposite(const SdfGrid& static_W, std::span<const PlacedObject> objects,
                                  double max_distance_m, const ExactSolids* solids)
     : static_W_(static_W),
       static_readable_(field_kernels::IsReadable(static_W)),
@@ -77,7 +77,7 @@ PlacedComposite::PlacedComposite(const SdfGrid& static_W, const std::vector<Plac
   for (const PlacedObject& given : objects) {
     const Eigen::Matrix3d R_WO = given.X_WO.rotation().toRotationMatrix();
     const Eigen::Vector3d center_W =
-        given.X_WO * Eigen::Vector3d((given.bound.low_O + given.bound.high_O) / 2);
+        R_WO * (given.bound.low_O + given.bound.high_O) / 2 + given.X_WO.translation();
     const Eigen::Vector3d half_W = R_WO.cwiseAbs() * (given.bound.high_O - given.bound.low_O) / 2 +
                                    Eigen::Vector3d::Constant(kRounding_m);
     Object& object = objects_.emplace_back();

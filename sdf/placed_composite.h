@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "sidestep/core/pose.h"
@@ -59,7 +60,7 @@ class PlacedComposite final : public FieldSlice {
   static constexpr std::size_t kMany = 16;
 
   /// @param static_W must outlive this, and so must the solids, of which there need be none.
-  PlacedComposite(const SdfGrid& static_W, const std::vector<PlacedObject>& objects,
+  PlacedComposite(const SdfGrid& static_W, std::span<const PlacedObject> objects,
                   double max_distance_m, const ExactSolids* solids = nullptr);
 
   /// As DistanceField has it.

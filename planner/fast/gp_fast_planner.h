@@ -19,6 +19,12 @@ class GpFastPlanner final : public SeededPlanner {
   GpFastPlanner(const robot::RobotModel& robot, const PlannerSettings& settings,
                 const GpSettings& gp = {});
 
+  PlannerCapabilities capabilities() const override {
+    PlannerCapabilities mine = SeededPlanner::capabilities();
+    mine.iterations_for_one = 8;
+    return mine;
+  }
+
  private:
   std::unique_ptr<TrajectoryOptimizer> MakeOptimizer(const PlanRequest& request) const override;
 

@@ -351,9 +351,15 @@ void ClearanceOfGroup(const Arm& arm, const double* centers_8, const double* sam
           return Load3(centers_8 + 3 * kGroup * static_cast<std::size_t>(sphere) + lane);
         };
         const Vector between = Minus(center(pair.second), center(pair.first));
-        const V gap =
-            hn::Sub(hn::Sub(hn::Sqrt(Dot(between, between)), Constant(pair.first_radius_m)),
-                    Constant(pair.second_radius_m));
+        const V square = Dot(between, between);
+        // A little more than where it would be the least: the root decides.
+        const V reach =
+            hn::Mul(Constant(1.000001),
+                    hn::Max(hn::Add(least, Constant(pair.first_radius_m + pair.second_radius_m)),
+                            hn::Zero(d)));
+        if (hn::AllFalse(d, hn::Le(square, hn::Mul(reach, reach)))) continue;
+        const V gap = hn::Sub(hn::Sub(hn::Sqrt(square), Constant(pair.first_radius_m)),
+                              Constant(pair.second_radius_m));
         least = hn::Min(least, gap);
       }
     }

@@ -244,6 +244,18 @@ TEST_P(EveryPlanner, RefusesRequestsThatMeanNothing) {
 INSTANTIATE_TEST_SUITE_P(Registered, EveryPlanner, ::testing::ValuesIn(PlannerNames()),
                          [](const auto& test) { return test.param; });
 
+TEST_P(EveryPlanner, GetsAsManyIterationsForOneOfGpmpAsItSaysTakeNoMoreTime) {
+  const auto planner = MakePlanner(GetParam(), MakePlanarArm(), {});
+  const int for_one = planner->capabilities().iterations_for_one;
+  EXPECT_GE(for_one, 1);
+  if (GetParam() == "gpmp") {
+    EXPECT_EQ(for_one, 1);
+  }
+  EXPECT_EQ(planner->BudgetOf(40).iterations, 40 * for_one);
+  constexpr int kNoEnd = std::numeric_limits<int>::max();
+  EXPECT_EQ(planner->BudgetOf(kNoEnd).iterations, kNoEnd);
+}
+
 std::vector<std::string> PlannersThatDeclare(bool PlannerCapabilities::*capability) {
   std::vector<std::string> names;
   for (const std::string& name : PlannerNames()) {

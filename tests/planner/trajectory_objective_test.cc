@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "sidestep/core/random.h"
+#include "sidestep/planner/compressed/chain_rows.h"
 #include "sidestep/planner/compressed/compressed_problem.h"
 #include "sidestep/planner/first_guess.h"
 #include "sidestep/planner/gp_problem.h"
@@ -163,6 +164,38 @@ TEST_P(TrajectoryObjectiveOf, IsTheSameToCeresInFewAndSmallBlocks) {
   EXPECT_NEAR(cost, expected.cost, 1e-11 * expected.cost);
   // No more rows than unknowns, but for the one that keeps what no step changes.
   EXPECT_EQ(problem.problem().NumResiduals(), problem.problem().NumParameters() + 1);
+}
+
+TEST_P(TrajectoryObjectiveOf, IsRowsThatSayWhatTheBestStepGains) {
+  const ChainQuadratic quadratic = Evaluate();
+  const int D = quadratic.block_size(), K = quadratic.num_blocks();
+  ChainRows rows;
+  ASSERT_TRUE(rows.Set(quadratic));
+  Eigen::MatrixXd R = Eigen::MatrixXd::Zero(K * D, K * D);
+  Eigen::VectorXd r(K * D), own(D), next(D);
+  for (int k = 0; k < K; ++k) {
+    for (int i = 0; i < D; ++i) {
+      const int row = k * D + i;
+      const bool is_last = k + 1 == K;
+      rows.CopyRow(k, i, own.data(), is_last ? nullptr : next.data());
+      R.row(row).segment(k * D, D) = own;
+      if (!is_last) R.row(row).segment(row - i + D, D) = next;
+      r(row) = rows.residual(k, i);
+    }
+  }
+  const Eigen::MatrixXd H = quadratic.DenseHessian();
+  const Eigen::VectorXd g = quadratic.DenseGradient();
+  EXPECT_TRUE(R.isUpperTriangular());
+  EXPECT_LT((R.transpose() * R - H).norm(), 1e-12 * H.norm());
+  EXPECT_LT((R.transpose() * r - g).norm(), 1e-10 * g.norm());
+  const double gain = 0.5 * g.dot(H.llt().solve(g)), cost = quadratic.cost.total();
+  EXPECT_NEAR(rows.gain(), gain, 1e-7 * gain);
+  EXPECT_NEAR(rows.gain() + rows.rest(), cost, 1e-12 * cost);
+  EXPECT_GT(gain, 0.01 * cost) << "there is nothing to gain";
+
+  ChainQuadratic saddle = quadratic;
+  saddle.panel(0)[0] = -1;
+  EXPECT_FALSE(rows.Set(saddle));
 }
 
 TEST_P(TrajectoryObjectiveOf, IsSolvedAsByDenseAlgebraAndToTheBitByAnyInstructionSet) {
