@@ -27,7 +27,8 @@ class VirtualObstacles final : public robot::RobotInterface {
  public:
   VirtualObstacles(std::unique_ptr<hardware::PandaRobot> panda, const scenarios::Scenario& scenario,
                    const DataPaths& paths, const sim::SensorMaker& make_sensor)
-      : panda_(std::move(panda)), obstacles_(WithoutRobot(scenario), paths.models, make_sensor) {}
+      : panda_(std::move(panda)),
+        obstacles_(WithoutRobot(scenario), paths.all_models(), make_sensor) {}
 
   hardware::PandaRobot& panda() { return *panda_; }
   sim::Simulation& obstacles() { return obstacles_; }
@@ -90,7 +91,7 @@ bench::WorldFactory HardwareWorlds(const DataPaths& paths, const std::string& ad
     bench::EpisodeWorld world;
     world.robot = stage.get();
     world.sensors = stage->obstacles().sensors();
-    world.model_xml = sim::BuildWorldXml(scenario, robot.mount_links(), paths.models);
+    world.model_xml = sim::BuildWorldXml(scenario, robot.mount_links(), paths.all_models());
     world.joints = robot.joint_names();
     world.obstacles = stage->obstacles().obstacles();
     world.facts["robot_at"] = address + (IsLoopback(address) ? " (simulated)" : "");

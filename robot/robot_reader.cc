@@ -271,29 +271,23 @@ Eigen::VectorXd ReadGains(const YamlReader& map, const std::string& key, int num
 
 }  // namespace
 
-std::vector<std::string> RobotModel::ListNames(const std::string& models_dir) {
-  namespace fs = std::filesystem;
-  std::vector<std::string> names;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(models_dir, error)) {
-    if (fs::exists(entry.path() / "robot.yaml", error)) {
-      names.push_back(entry.path().filename().string());
-    }
-  }
-  std::sort(names.begin(), names.end());
-  return names;
+std::vector<std::string> RobotModel::ListNames(const ModelFolders& models) {
+  return models.NamesWith("robot.yaml");
 }
 
-RobotModel RobotModel::Load(const std::string& models_dir, const std::string& name,
-                            const Pose& X_WB) {
-  const std::vector<std::string> names = ListNames(models_dir);
+RobotModel RobotModel::Load(const ModelFolders& models, const std::string& name, const Pose& X_WB) {
+  const std::vector<std::string> names = ListNames(models);
   if (std::find(names.begin(), names.end(), name) == names.end()) {
-    throw InputError(models_dir, "holds no robot '" + name +
-                                     "' (known: " + (names.empty() ? "none" : Joined(names)) + ")");
+    throw InputError(Joined(models.folders()), "holds no robot '" + name + "' (known: " +
+                                                   (names.empty() ? "none" : Joined(names)) + ")");
   }
-  const std::string path = models_dir + "/" + name + "/robot.yaml";
+  return FromFolder(models.Find(name).value(), X_WB);
+}
+
+RobotModel RobotModel::FromFolder(const std::string& folder, const Pose& X_WB) {
+  const std::string path = folder + "/robot.yaml";
   RobotModel model = FromFile(path, X_WB);
-  if (model.name() != name) {
+  if (model.name() != std::filesystem::path(folder).filename()) {
     throw InputError(path, "name: must be the folder's, is '" + model.name() + "'");
   }
   return model;

@@ -7,10 +7,14 @@
 #include <cstdlib>
 #include <set>
 #include <sstream>
+#include <stdexcept>
 #include <string_view>
+#include <vector>
 
+#include "sidestep/core/convex_polytope.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/text_file.h"
+#include "sidestep/sim/mesh_vertices.h"
 
 namespace sidestep::sim {
 namespace {
@@ -39,10 +43,8 @@ constexpr Bound kBounds[] = {
     {"user", "dim", 1000},   // a sensor's values
 };
 
-// Made to any size from a few words, or of no use here: robots are made of primitives.
-// (MuJoCo 2.2.2 also crashes on some meshes.)
-const std::set<std::string_view> kRefused = {"composite", "hfield",   "mesh",
-                                             "skin",      "flexcomp", "plugin"};
+// Made to any size from a few words, or of no use here.
+const std::set<std::string_view> kRefused = {"composite", "hfield", "skin", "flexcomp", "plugin"};
 
 // The sections that BuildWorldXml writes or takes over from the robot.
 const std::set<std::string_view> kSections = {
@@ -75,6 +77,7 @@ class Walk {
     }
     if (kRefused.count(tag) > 0) Fail(element, tag, "is no part of a robot of primitives");
     if (tag == "texture") CountTexture(element);
+    if (tag == "mesh") CheckMesh(element);
     for (const XMLElement* child = element.FirstChildElement(); child != nullptr;
          child = child->NextSiblingElement()) {
       Check(*child);
@@ -117,6 +120,21 @@ class Walk {
     }
   }
 
+  // A mesh is the hull of its vertices. (MuJoCo 2.2.2 crashes on some that are no solids.)
+  void CheckMesh(const XMLElement& mesh) const {
+    for (const tinyxml2::XMLAttribute* attribute = mesh.FirstAttribute(); attribute != nullptr;
+         attribute = attribute->Next()) {
+      const std::string_view key = attribute->Name();
+      if (key == "name" || key == "vertex") continue;
+      Fail(mesh, key, "is not taken: a mesh is given by its name and the vertices of its hull");
+    }
+    try {
+      CheckVertices(mesh);
+    } catch (const std::invalid_argument& fault) {
+      Fail(mesh, "vertex", fault.what());
+    }
+  }
+
   // Six faces of three bytes a pixel, as a sky has them, made anew for each element.
   void CountTexture(const XMLElement& texture) {
     const double width = std::max(1.0, texture.DoubleAttribute("width", 0));
@@ -124,6 +142,14 @@ class Walk {
     texture_bytes_ += 18 * width * height;
     if (texture_bytes_ > kMostTextureBytes) {
       Fail(texture, "texture", "with it textures would take more than 256 MiB of memory");
+    }
+  }
+
+  static void CheckVertices(const XMLElement& mesh) {
+    const std::vector<Eigen::Vector3d> vertices = VerticesOf(mesh.Attribute("vertex"));
+    const ConvexPolytope hull(vertices);
+    if (hull.thickness_m() < 1e-6 * hull.half_extents_m().maxCoeff()) {
+      throw std::invalid_argument("are a solid that is too thin for its size");
     }
   }
 
