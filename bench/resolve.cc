@@ -114,10 +114,9 @@ void ResolveTask(scenarios::Scenario& scenario, const robot::RobotModel& robot) 
     check.CheckClear("task.goal", scenario.q_goal, object, path, solid);
   };
   check_both(kFloor, "floor_m", sdf::ShapeField(StaticSolids{{}, {FloorOf(scenario)}}));
-  for (std::size_t n = 0; n < scenario.static_boxes.size(); ++n) {
-    const scenarios::StaticBox& box = scenario.static_boxes[n];
-    check_both(box.name, "static_boxes[" + std::to_string(n) + "]",
-               sdf::ShapeField(StaticSolids{{{Box{box.size_m}, box.X_WO}}, {}}));
+  for (const scenarios::StaticObstacle& fixed : scenario.static_obstacles) {
+    check_both(fixed.name, fixed.path,
+               sdf::ShapeField(StaticSolids{{{fixed.shape, fixed.X_WO}}, {}}));
   }
   const std::vector<sdf::MovingShape> motions = TrueMotions(scenario);
   for (std::size_t n = 0; n < motions.size(); ++n) {

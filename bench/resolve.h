@@ -6,10 +6,10 @@
 namespace sidestep::bench {
 
 /// Looks up the scenario's start and goal in the robot's configurations and judges them: known, of
-/// the right length, within the joint limits, and clear of the floor, of every static box and of
-/// the moving obstacles as they stand at t = 0 (start only). Mount spheres are not judged against
-/// what the robot stands on: the mount or, without one, the floor. Clearance is exact: spheres
-/// against the true shapes.
+/// the right length, within the joint limits, and clear of the floor, of every static obstacle and
+/// of the moving obstacles as they stand at t = 0 (start only). Mount spheres are not judged
+/// against what the robot stands on: the mount or, without one, the floor. Clearance is exact:
+/// spheres against the true shapes.
 /// @throws InputError naming the scenario's file, line and key.
 void ResolveTask(scenarios::Scenario& scenario, const robot::RobotModel& robot);
 

@@ -5,11 +5,11 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "sidestep/core/fingerprint.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/number_text.h"
-#include "sidestep/robot/model_name.h"
 
 namespace sidestep::bench {
 namespace {
@@ -39,7 +39,7 @@ void AddFolder(const fs::path& folder, Fingerprint& fingerprint) {
 
 }  // namespace
 
-RunIdentity IdentifyRun(const scenarios::Scenario& scenario, const std::string& models,
+RunIdentity IdentifyRun(const scenarios::Scenario& scenario, const ModelFolders& models,
                         const std::string& build) {
   Fingerprint text, files;
   text.Add(scenarios::ToYaml(scenario));
@@ -52,14 +52,15 @@ RunIdentity IdentifyRun(const scenarios::Scenario& scenario, const std::string& 
     text.Add(key);
     text.Add(ShortestText(value));
   }
-  std::set<std::string> names = {robot::ModelFolder(scenario.robot)};
+  std::set<std::pair<std::string, std::string>> folders;  // by name
   for (const scenarios::MovingObstacle& obstacle : scenario.moving_obstacles) {
-    names.insert(obstacle.appearance);
+    const std::string& name = obstacle.appearance;
+    if (!name.empty()) folders.emplace(name, models.Find(name).value_or(name));
   }
-  names.erase("");
-  for (const std::string& name : names) {
+  if (!scenario.robot.empty()) folders.emplace(scenario.robot, RobotFolder(scenario, models));
+  for (const auto& [name, folder] : folders) {
     files.Add(name);
-    AddFolder(fs::path(models) / name, files);
+    AddFolder(folder, files);
   }
   return {text.Text(), files.Text(), build, ""};
 }

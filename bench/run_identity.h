@@ -15,9 +15,8 @@ struct RunIdentity {
   std::string method;    ///< what else is done with the scenario; empty: an episode is run
 };
 
-/// Of an episode. @param models the folder that holds one folder a robot. @throws InputError if a
-/// file cannot be read.
-RunIdentity IdentifyRun(const scenarios::Scenario& scenario, const std::string& models,
+/// Of an episode. @throws InputError if a file cannot be read.
+RunIdentity IdentifyRun(const scenarios::Scenario& scenario, const ModelFolders& models,
                         const std::string& build);
 
 /// One word for it all.

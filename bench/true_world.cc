@@ -6,8 +6,9 @@ namespace sidestep::bench {
 
 std::vector<PlacedShape> StaticShapes(const scenarios::Scenario& scenario) {
   std::vector<PlacedShape> shapes;
-  for (const scenarios::StaticBox& box : scenario.static_boxes)
-    shapes.push_back({Box{box.size_m}, box.X_WO});
+  for (const scenarios::StaticObstacle& fixed : scenario.static_obstacles) {
+    shapes.push_back({fixed.shape, fixed.X_WO});
+  }
   return shapes;
 }
 

@@ -100,7 +100,7 @@ std::string Json(const std::vector<bench::AuditRow>& rows, const bench::AuditPla
 }
 
 int Audit(const AuditOptions& options) {
-  const DataPaths paths = FindDataPaths();
+  const DataPaths paths = FindDataPaths(options.scenario.models);
   const Problem problem =
       LoadProblem(options.scenario.scenario, ParseOverrides(options.scenario), paths);
   WarnOfThinThings(problem.scenario);

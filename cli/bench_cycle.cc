@@ -93,7 +93,7 @@ std::vector<Bench> MakeBenches(const CycleBenchOptions& options, const DataPaths
 
 int BenchCycles(const CycleBenchOptions& options) {
   if (!options.json.empty()) CheckCanWrite(options.json);
-  const DataPaths paths = FindDataPaths();
+  const DataPaths paths = FindDataPaths(options.scenario.models);
   std::vector<Bench> benches = MakeBenches(options, paths);
   for (int run = 0; run < options.num_runs; ++run) {
     for (Bench& bench : benches) bench.Run(paths);

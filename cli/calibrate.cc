@@ -67,8 +67,8 @@ std::vector<hardware::HandView> FindViews(const hardware::RecordedFrames& frames
 }
 
 int Calibrate(const CalibrateOptions& options) {
-  const Problem problem =
-      LoadProblem(options.scenario.scenario, ParseOverrides(options.scenario), FindDataPaths());
+  const Problem problem = LoadProblem(options.scenario.scenario, ParseOverrides(options.scenario),
+                                      FindDataPaths(options.scenario.models));
   CheckCanWrite(options.out);
   const hardware::RecordedFrames frames(options.views);
   const std::string joints_file = (std::filesystem::path(options.views) / "joints.csv").string();

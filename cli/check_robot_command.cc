@@ -130,7 +130,7 @@ int CheckRobot(const CheckRobotOptions& options) {
     throw InputError("--cover-mm", "must be > 0 to cover the robot anew");
   }
   const DataPaths paths = FindDataPaths();
-  CheckedRobot checked = LoadRobot(options.robot, paths.models);
+  CheckedRobot checked = LoadRobot(options.robot, paths.all_models());
   std::optional<OutFolder> out;
   if (!options.out.empty()) out.emplace(options.out, std::vector<std::string>{kPicture});
   if (!options.json.empty()) CheckCanWrite(options.json);

@@ -28,6 +28,8 @@ void AddStudyCommand(CommandLine& line);
 void AddDoctorCommand(CommandLine& line);
 void AddFieldCommand(CommandLine& line);
 void AddFciServerCommand(CommandLine& line);
+void AddNewScenarioCommand(CommandLine& line);
+void AddImportSceneCommand(CommandLine& line);
 void AddHardwareCommand(CommandLine& line);
 void AddValidateCommand(CommandLine& line);
 void AddManualCommand(CommandLine& line);

@@ -22,9 +22,7 @@ DataPaths In(const fs::path& folder) {
   return {(folder / "models").string(), (folder / "scenarios").string()};
 }
 
-}  // namespace
-
-DataPaths FindDataPaths() {
+DataPaths FindOwnPaths() {
   if (const char* chosen = std::getenv("SIDESTEP_DATA_DIR")) {
     if (HoldsData(chosen)) return In(chosen);
     throw InputError("SIDESTEP_DATA_DIR",
@@ -36,6 +34,26 @@ DataPaths FindDataPaths() {
   if (!error && HoldsData(installed)) return In(installed);
   if (HoldsData(SIDESTEP_SOURCE_DIR)) return In(SIDESTEP_SOURCE_DIR);
   throw InputError("sidestep", "no models/ and scenarios/ found; set SIDESTEP_DATA_DIR");
+}
+
+}  // namespace
+
+ModelFolders DataPaths::all_models() const {
+  std::vector<std::string> folders = more_models;
+  folders.push_back(models);
+  return folders;
+}
+
+DataPaths FindDataPaths(const std::vector<std::string>& more_models) {
+  DataPaths paths = FindOwnPaths();
+  for (const std::string& folder : more_models) {
+    std::error_code error;
+    if (!fs::is_directory(folder, error)) {
+      throw InputError("--models", "'" + folder + "' is no folder");
+    }
+  }
+  paths.more_models = more_models;
+  return paths;
 }
 
 std::string FindScenario(const std::string& scenario, const DataPaths& paths) {

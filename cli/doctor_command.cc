@@ -45,7 +45,7 @@ void CheckData(Report& report) {
       const scenarios::Scenario scenario =
           scenarios::LoadScenario(paths.scenarios + "/" + name + ".yaml");
       if (!scenario.robot.empty()) {
-        robot::RobotModel::Load(paths.models, scenario.robot, scenario.X_WB);
+        RobotOf(scenario, paths.models);
       }
       ++num_scenarios;
     }

@@ -12,6 +12,7 @@
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/provenance.h"
+#include "sidestep/cli/scenario_options.h"
 #include "sidestep/cli/sensors.h"
 #include "sidestep/cli/server_trace.h"
 #include "sidestep/cli/stop_signals.h"
@@ -32,7 +33,7 @@ namespace {
 struct ServerCommand {
   sim::fci::ServerOptions server;
   std::string clock = "lockstep", scenario, faults, out;
-  std::vector<std::string> settings;
+  std::vector<std::string> settings, models;
   std::optional<double> speed_m_s;
   std::vector<double> q_start;
 };
@@ -124,7 +125,7 @@ void BeginTrace(const ServerCommand& options, int number, scenarios::Scenario sc
   scenario.q_start = StartOf(options, scenario, robot);
   if (scenario.q_goal.size() == 0) scenario.q_goal = scenario.q_start;
   trace.emplace(options.out, number, scenario, robot,
-                sim::BuildWorldXml(scenario, robot.mount_links(), paths.models),
+                sim::BuildWorldXml(scenario, robot.mount_links(), paths.all_models()),
                 Identify(scenario, paths));
 }
 
@@ -145,13 +146,14 @@ std::optional<sim::fci::FrameServer> CameraOf(const ServerCommand& options,
 }
 
 int Serve(ServerCommand options) {
-  const DataPaths paths = FindDataPaths();
+  const DataPaths paths = FindDataPaths(options.models);
   const sim::fci::FaultScript faults =
       options.faults.empty() ? sim::fci::FaultScript() : sim::fci::ReadFaultScript(options.faults);
   const scenarios::Scenario scenario = WorldOf(options, paths);
-  const robot::RobotModel robot = robot::RobotModel::Load(paths.models, "panda", scenario.X_WB);
+  const ModelFolders models = paths.all_models();
+  const robot::RobotModel robot = RobotOf(scenario, models);
   const auto world =
-      sim::fci::MakePandaWorld(scenario, robot, paths.models, StartOf(options, scenario, robot));
+      sim::fci::MakePandaWorld(scenario, robot, models, StartOf(options, scenario, robot));
   Judge judge(*world);
   std::optional<ServerTrace> trace;
   const auto write_trace = [&] {
@@ -221,6 +223,7 @@ void AddFciServerCommand(CommandLine& line) {
                      "Whose things stand and move around the arm; a name or a path");
   server->add_option("--set", options->settings, "KEY=VALUE of the scenario, as for `sidestep run`")
       ->allow_extra_args(false);
+  AddModels(*server, options->models);
   server
       ->add_option("--speed", options->speed_m_s,
                    "Speed of every moving obstacle of the scenario [m/s]")

@@ -138,8 +138,8 @@ std::string TitleOf(const scenarios::Scenario& scenario, double time_s) {
 int DrawField(const FieldOptions& options) {
   render::CheckPngName(options.out);
   CheckCanWrite(options.out);
-  const Scene scene =
-      LoadScene(options.scenario.scenario, ParseOverrides(options.scenario), FindDataPaths());
+  const Scene scene = LoadScene(options.scenario.scenario, ParseOverrides(options.scenario),
+                                FindDataPaths(options.scenario.models));
   const GridSpec& grid = scene.scenario.grid;
   CheckHeight(options.height_m, grid);
   const Belief belief = Watch(scene, options);

@@ -150,7 +150,7 @@ int DryRun(const HardwareOptions& options, const Problem& problem, const DataPat
 }
 
 int RunOnHardware(const HardwareOptions& options) {
-  const DataPaths paths = FindDataPaths();
+  const DataPaths paths = FindDataPaths(options.scenario.models);
   Problem problem = LoadForHardware(options, paths);
   if (options.dry_run) return DryRun(options, problem, paths);
   const bool lockstep = options.clock == "lockstep";
@@ -210,7 +210,7 @@ std::string MoveAlong(hardware::PandaRobot& panda, const Trajectory& way, const 
 }
 
 int GoToStart(const HardwareOptions& options) {
-  const DataPaths paths = FindDataPaths();
+  const DataPaths paths = FindDataPaths(options.scenario.models);
   const Problem problem = LoadForHardware(options, paths);
   control::SafetySettings safety = sim::SafetyOf(problem.scenario, problem.robot);
   safety.slow_after_s = safety.stale_s = 1e9;  // it moves unseeing
@@ -250,7 +250,7 @@ std::vector<ObstacleState> ObstaclesOf(const scenarios::Scenario& scenario) {
 }
 
 int Recover(const HardwareOptions& options) {
-  const DataPaths paths = FindDataPaths();
+  const DataPaths paths = FindDataPaths(options.scenario.models);
   std::optional<Problem> problem;
   if (!options.scenario.scenario.empty()) problem = LoadForHardware(options, paths);
   const robot::RobotModel robot =

@@ -28,7 +28,7 @@ class Stage final : public robot::RobotInterface {
  public:
   Stage(std::unique_ptr<robot::RobotInterface> arm, const scenarios::Scenario& scenario,
         const DataPaths& paths, const sim::SensorMaker& make_sensor)
-      : arm_(std::move(arm)), obstacles_(WithoutRobot(scenario), paths.models, make_sensor) {}
+      : arm_(std::move(arm)), obstacles_(WithoutRobot(scenario), paths.all_models(), make_sensor) {}
 
   sim::Simulation& obstacles() { return obstacles_; }
 
@@ -59,7 +59,7 @@ bench::EpisodeWorld WorldAround(std::unique_ptr<robot::RobotInterface> arm,
   bench::EpisodeWorld world;
   world.robot = stage.get();
   world.sensors = stage->obstacles().sensors();
-  world.model_xml = sim::BuildWorldXml(scenario, robot.mount_links(), paths.models);
+  world.model_xml = sim::BuildWorldXml(scenario, robot.mount_links(), paths.all_models());
   world.joints = robot.joint_names();
   world.obstacles = stage->obstacles().obstacles();
   world.facts["robot_at"] = site.address + (IsLoopback(site.address) ? " (simulated)" : "");

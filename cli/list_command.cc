@@ -9,6 +9,7 @@
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/data_paths.h"
+#include "sidestep/cli/scenario_options.h"
 #include "sidestep/cli/sensors.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
@@ -61,13 +62,7 @@ class Catalogue {
  public:
   explicit Catalogue(const DataPaths& paths) {
     AddScenarios(paths.scenarios);
-    Kind& robots = kinds_.emplace_back(Kind{"robots", {}});
-    for (const std::string& name : robot::RobotModel::ListNames(paths.models)) {
-      robots.items.push_back({name});
-      for (const std::string& variant : robot::VariantNames(paths.models, name)) {
-        robots.items.push_back({variant, "with other spheres"});
-      }
-    }
+    AddRobots(paths.all_models());
     Kind& knowledge = kinds_.emplace_back(Kind{"knowledge", {}});
     for (const sdf::Knowledge one : sdf::kAllKnowledge) {
       knowledge.items.push_back({ToString(one)});
@@ -94,6 +89,18 @@ class Catalogue {
       items.push_back({name, meaning == nullptr ? "" : meaning(name)});
     }
     return items;
+  }
+
+  void AddRobots(const ModelFolders& models) {
+    Kind robots{"robots", {}};
+    for (const std::string& name : robot::RobotModel::ListNames(models)) {
+      const std::string folder = models.Find(name).value_or("");
+      robots.items.push_back({name, folder});
+      for (const std::string& variant : robot::VariantNames(folder)) {
+        robots.items.push_back({variant, "with other spheres"});
+      }
+    }
+    kinds_.push_back(std::move(robots));
   }
 
   void AddScenarios(const std::string& folder) {
@@ -128,9 +135,16 @@ void PrintItems(const Kind& kind, bool is_alone) {
   }
 }
 
+struct ListOptions {
+  std::string kind;
+  bool only_names = false;
+  std::vector<std::string> models;
+};
+
 // Each fault has a line of its own, after all that is in order.
-int List(const std::string& kind_name, bool only_names) {
-  const Catalogue catalogue(FindDataPaths());
+int List(const ListOptions& options) {
+  const auto& [kind_name, only_names, models] = options;
+  const Catalogue catalogue(FindDataPaths(models));
   std::vector<std::string> known;
   bool found = kind_name.empty();
   for (const Kind& kind : catalogue.kinds()) {
@@ -154,11 +168,6 @@ int List(const std::string& kind_name, bool only_names) {
   return catalogue.faults().empty() ? 0 : 2;
 }
 
-struct ListOptions {
-  std::string kind;
-  bool only_names = false;
-};
-
 }  // namespace
 
 void AddListCommand(CommandLine& line) {
@@ -169,7 +178,8 @@ void AddListCommand(CommandLine& line) {
       "predictors, sensors, metrics");
   list->add_option("KIND", options->kind, "Only this kind");
   list->add_flag("--names", options->only_names, "Only the names, one a line, for scripts");
-  list->callback([&line, options] { line.exit_code = List(options->kind, options->only_names); });
+  AddModels(*list, options->models);
+  list->callback([&line, options] { line.exit_code = List(*options); });
 }
 
 }  // namespace sidestep::cli

@@ -132,8 +132,7 @@ bool LookAgain(const DataPaths& paths, const std::string& folder, const std::str
                                                std::to_string(line) + " of " + table_file + " on");
   if (!out.empty()) {
     const std::string video = MakeOutFolder(out, {kDryRunVideo}) + "/" + kDryRunVideo;
-    const robot::RobotModel robot =
-        robot::RobotModel::Load(paths.models, scenario.robot, scenario.X_WB);
+    const robot::RobotModel robot = RobotOf(scenario, paths.all_models());
     WriteCameraVideo(camera_folder, X_WC, recording, robot, video);
     Print("written          {}\n", video);
   }

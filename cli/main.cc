@@ -67,6 +67,8 @@ int Run(int argc, char** argv) {
   sidestep::cli::AddCheckRobotCommand(line);
   sidestep::cli::AddDoctorCommand(line);
   sidestep::cli::AddFieldCommand(line);
+  sidestep::cli::AddNewScenarioCommand(line);
+  sidestep::cli::AddImportSceneCommand(line);
   sidestep::cli::AddHardwareCommand(line);
   sidestep::cli::AddFciServerCommand(line);
   sidestep::cli::AddValidateCommand(line);

@@ -11,7 +11,7 @@ const std::string kVersionKey = "version.";  // begins the keys of the versions 
 }  // namespace
 
 bench::RunIdentity Identify(const scenarios::Scenario& scenario, const DataPaths& paths) {
-  return bench::IdentifyRun(scenario, paths.models, BuildId());
+  return bench::IdentifyRun(scenario, paths.all_models(), BuildId());
 }
 
 std::map<std::string, std::string> Provenance(const bench::RunIdentity& identity) {

@@ -138,19 +138,13 @@ for (std::size_t i = 0; i < link.hulls.size(); ++i) {
 return solids;
 }
 
-CheckedRobot LoadRobot(const std::string& name, const std::string& models_dir) {
+CheckedRobot LoadRobot(const std::string& name, const ModelFolders& models) {
   const bool is_path = name.find('/') != std::string::npos || name.ends_with(".yaml");
   std::error_code error;
-  std::string file = name;
-  if (!is_path) {
-    const std::string variant = robot::ModelVariant(name);
-    file = models_dir + "/" + robot::ModelFolder(name) + "/" +
-           (variant.empty() ? "robot" : variant) + ".yaml";
-  } else if (fs::is_directory(name, error)) {
-    file = (fs::path(name) / "robot.yaml").string();
-  }
+  std::string file = fs::is_directory(name, error) ? name + "/robot.yaml" : name;
   robot::RobotModel robot = is_path ? robot::RobotModel::FromFile(file, Pose())
-                                    : robot::RobotModel::Load(models_dir, name, Pose());
+                                    : robot::RobotModel::Load(models, name, Pose());
+  file = robot.file();
   const fs::path folder = fs::path(robot.file()).parent_path();
   std::string mjcf = (folder / (robot.name() + ".xml")).string();
   sim::MujocoModelPtr model = sim::LoadArmFile(mjcf);

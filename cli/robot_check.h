@@ -24,7 +24,7 @@ struct CheckedRobot {
 /// @param name a robot of `models_dir`, with a variant or not (`panda:covered`); or a path, with a
 ///   / or ending in .yaml: a folder, or a robot.yaml or variant in it.
 /// @throws InputError, also where robot.yaml and MJCF disagree.
-CheckedRobot LoadRobot(const std::string& name, const std::string& models_dir);
+CheckedRobot LoadRobot(const std::string& name, const ModelFolders& models);
 
 /// How well the spheres of one link cover its solids.
 struct LinkReport {

@@ -27,7 +27,7 @@ struct RunOptions {
 };
 
 int Run(const RunOptions& options) {
-  const DataPaths paths = FindDataPaths();
+  const DataPaths paths = FindDataPaths(options.scenario.models);
   const Problem problem =
       LoadProblem(options.scenario.scenario, ParseOverrides(options.scenario), paths);
   WarnOfThinThings(problem.scenario);

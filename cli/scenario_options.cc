@@ -6,12 +6,22 @@
 
 namespace sidestep::cli {
 
+void AddModels(CLI::App& command, std::vector<std::string>& models) {
+  command
+      .add_option("--models", models,
+                  "A folder of robots, searched before those that come with Sidestep; may be "
+                  "repeated")
+      ->type_name("DIR")
+      ->allow_extra_args(false);
+}
+
 CLI::Option* AddScenario(CLI::App& command, ScenarioOptions& options) {
   command
       .add_option("--set", options.settings,
                   "KEY=VALUE: one of the scenario's choices (pair=3), or any key of its file by "
                   "its path (planner.qc=2, moving_obstacles[0].name=cart); may be repeated")
       ->allow_extra_args(false);
+  AddModels(command, options.models);
   return command.add_option("SCENARIO", options.scenario, "A name (see `sidestep list`) or a path")
       ->required();
 }

@@ -14,9 +14,13 @@ struct ScenarioOptions {
   std::string scenario;
   Overrides overrides;                ///< but for its settings
   std::vector<std::string> settings;  ///< KEY=VALUE
+  std::vector<std::string> models;    ///< further folders of robots
 };
 
-/// Adds SCENARIO and --set, for who wants to know where things are. @return SCENARIO.
+/// Adds --models, for every command that loads robots.
+void AddModels(CLI::App& command, std::vector<std::string>& models);
+
+/// Adds SCENARIO, --set and --models, for who wants to know where things are. @return SCENARIO.
 CLI::Option* AddScenario(CLI::App& command, ScenarioOptions& options);
 
 /// The same, and --knowledge, --predictor, --speed and --seed.

@@ -42,9 +42,10 @@ hardware::TagSensorOptions TagSensorOptionsOf(const scenarios::Scenario& scenari
     const Eigen::Vector3d size_m = std::get<Box>(obstacle.shape).size_m;
     options.bodies.push_back(BodyOf(obstacle.name, size_m, obstacle.tags));
   }
-  for (const scenarios::StaticBox& box : scenario.static_boxes) {
-    if (box.tags.empty()) continue;
-    options.references.push_back({BodyOf(box.name, box.size_m, box.tags), box.X_WO});
+  for (const scenarios::StaticObstacle& fixed : scenario.static_obstacles) {
+    if (fixed.tags.empty()) continue;
+    const Eigen::Vector3d size_m = std::get<Box>(fixed.shape).size_m;
+    options.references.push_back({BodyOf(fixed.name, size_m, fixed.tags), fixed.X_WO});
   }
   return options;
 }

@@ -41,7 +41,7 @@ sim::fci::FaultScript ScriptOf(const std::string& faults, double lost_share) {
 class ServedPanda {
  public:
   ServedPanda(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
-              const std::string& models, const sim::fci::FaultScript& script)
+              const ModelFolders& models, const sim::fci::FaultScript& script)
       : robot_(robot),
         world_(sim::fci::MakePandaWorld(Alone(scenario), robot_, models, scenario.q_start)),
         plant_(robot_, world_.get()),
@@ -100,7 +100,7 @@ bench::WorldFactory ServedWorlds(const DataPaths& paths, const std::string& faul
       std::shared_ptr<void> world;
     };
     const auto owner = std::make_shared<Owner>();
-    owner->server = std::make_unique<ServedPanda>(scenario, robot, paths.models, script);
+    owner->server = std::make_unique<ServedPanda>(scenario, robot, paths.all_models(), script);
     const bench::WorldFactory make = HardwareWorlds(
         paths, {owner->server->address(), &MakeSensor, ""},
         {.safety = sim::SafetyOf(scenario, robot), .lockstep = true, .stops_at_once = {}});

@@ -22,6 +22,7 @@
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/provenance.h"
+#include "sidestep/cli/scenario_options.h"
 #include "sidestep/cli/study_cases.h"
 #include "sidestep/cli/wiring.h"
 #include "sidestep/core/atomic_file.h"
@@ -40,6 +41,7 @@ struct StudyOptions {
   bool resume = false;
   bench::TableAxes axes;
   std::string traces = "none", out;
+  std::vector<std::string> models;
   std::string command;  // as it was typed
 };
 
@@ -232,6 +234,7 @@ void AddStudyCommand(CommandLine& line) {
       ->required();
   study->add_option("--set", space.settings, "KEY=VALUE, as in `sidestep run`; fixes a choice")
       ->allow_extra_args(false);
+  AddModels(*study, options->models);
   study
       ->add_option("--vary", space.varied,
                    "KEY=VALUE,VALUE,...: any key of --set, with several values; some options of a "
@@ -272,7 +275,7 @@ void AddStudyCommand(CommandLine& line) {
   study->add_option("--out", options->out, "Folder for the results [out/study/SCENARIO]");
   study->callback([&line, options] {
     options->command = line.text;
-    line.exit_code = Study(*options, FindDataPaths()).Run();
+    line.exit_code = Study(*options, FindDataPaths(options->models)).Run();
   });
 }
 

@@ -12,7 +12,7 @@ void WarnOfThinThings(const scenarios::Scenario& scenario) {
   if (scenario.sensor.cells != CellRule::kCentre || scenario.sensor.camera) return;
   const double cell_m = scenario.grid.cell_m;
   const auto check = [&](const std::string& key, const std::string& name, const Shape& shape) {
-    const double thickness_m = 2 * HalfExtents(shape).minCoeff();
+    const double thickness_m = Thickness(shape);
     if (thickness_m >= cell_m) return;
     PrintErrorText(
         std::string("warning: ") +
@@ -25,9 +25,9 @@ void WarnOfThinThings(const scenarios::Scenario& scenario) {
         "\n");
   };
   if (scenario.static_world == scenarios::StaticWorld::kOccupancy) {
-    for (std::size_t i = 0; i < scenario.static_boxes.size(); ++i) {
-      const scenarios::StaticBox& box = scenario.static_boxes[i];
-      check("static_boxes[" + std::to_string(i) + "].size_m", box.name, Box{box.size_m});
+    for (const scenarios::StaticObstacle& fixed : scenario.static_obstacles) {
+      const bool is_of_boxes = fixed.path.starts_with("static_boxes");
+      check(fixed.path + (is_of_boxes ? ".size_m" : ".shape"), fixed.name, fixed.shape);
     }
   }
   if (scenario.knowledge == "full_knowledge") return;  // moving things are known by their shapes

@@ -28,6 +28,7 @@
 #include "sidestep/cli/provenance.h"
 #include "sidestep/cli/run_folder.h"
 #include "sidestep/cli/run_summary.h"
+#include "sidestep/cli/scenario_options.h"
 #include "sidestep/cli/served_worlds.h"
 #include "sidestep/cli/shell_quote.h"
 #include "sidestep/cli/stop_signals.h"
@@ -46,7 +47,7 @@ constexpr const char* kFiles[] = {"validation.md", "validation.json", "validatio
 
 struct ValidateOptions {
   std::string planner, scenario, out, only;
-  std::vector<std::string> settings;
+  std::vector<std::string> settings, models;
   int seeds = 2, jobs = 0;
   std::string soak;  // draws: N or FIRST:LAST; empty: none
   bool resume = false;
@@ -134,6 +135,7 @@ class Validation {
                           ShellQuoted(options_.scenario);
     for (const std::string& setting : options_.settings)
       command += " --set " + ShellQuoted(setting);
+    for (const std::string& folder : options_.models) command += " --models " + ShellQuoted(folder);
     if (one.group == bench::validation_group::kSoak) {
       command += " --soak " + std::to_string(one.draw);
     } else if (one.draw > 2) {
@@ -328,6 +330,7 @@ void AddValidateCommand(CommandLine& line) {
   validate
       ->add_option("--set", options->settings, "KEY=VALUE of the scenario, as for `sidestep run`")
       ->allow_extra_args(false);
+  AddModels(*validate, options->models);
   validate
       ->add_option("--seeds", options->seeds,
                    "How often each combination is run, its obstacle coming from elsewhere [2]")
@@ -349,7 +352,7 @@ void AddValidateCommand(CommandLine& line) {
       "interrupted, 2 bad input. docs/validation.md says what is required, and why.");
   validate->callback([&line, options] {
     options->command = line.text;
-    line.exit_code = Validation(*options, FindDataPaths()).Run();
+    line.exit_code = Validation(*options, FindDataPaths(options->models)).Run();
   });
 }
 

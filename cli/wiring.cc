@@ -83,18 +83,6 @@ void CheckWord(const scenarios::Scenario& scenario, const std::string& key, cons
   throw scenarios::WrongValue(scenario, key, why);
 }
 
-std::vector<std::string> ModelNames(const std::string& models, const std::string& file_suffix) {
-  std::vector<std::string> names;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(models, error)) {
-    const std::string name = entry.path().filename().string();
-    const std::string file = file_suffix == ".xml" ? name + ".xml" : file_suffix;
-    if (std::filesystem::exists(entry.path() / file)) names.push_back(name);
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 // The file, overridden, with the words judged that have nothing to do with a robot.
 scenarios::Scenario LoadOverridden(const std::string& name, const Overrides& overrides,
                                    const DataPaths& paths) {
@@ -112,23 +100,45 @@ scenarios::Scenario LoadOverridden(const std::string& name, const Overrides& ove
     const std::string& appearance = scenario.moving_obstacles[i].appearance;
     if (appearance.empty()) continue;
     CheckWord(scenario, "moving_obstacles[" + std::to_string(i) + "].appearance", appearance,
-              ModelNames(paths.models, ".xml"));
+              paths.all_models().NamesWith("*.xml"));
   }
   return scenario;
 }
 
+// A robot that is named is one of those that are looked for; one by its path has its files there.
+void CheckRobotIsThere(const scenarios::Scenario& scenario, const ModelFolders& models) {
+  const std::vector<std::string> known = robot::RobotModel::ListNames(models);
+  if (scenario.robot_path.empty() &&
+      std::find(known.begin(), known.end(), scenario.robot) == known.end()) {
+    throw scenarios::WrongValue(scenario, "robot.model",
+                                "must be one of " + Joined(known) + " (of " +
+                                    Joined(models.folders()) + "), or a path with a /, is '" +
+                                    scenario.robot + "'");
+  }
+  const std::string file = RobotFolder(scenario, models) + "/" +
+                           robot::DescriptionFile(scenario.robot_variant);
+  std::error_code error;
+  if (std::filesystem::exists(file, error)) return;
+  throw scenarios::WrongValue(scenario, "robot.model", "there is no " + file);
+}
+
 Problem AddRobot(scenarios::Scenario scenario, const DataPaths& paths) {
   bench::ResolvePlanner(scenario);
-  CheckWord(scenario, "robot.model", robot::ModelFolder(scenario.robot),
-            ModelNames(paths.models, "robot.yaml"));
-  robot::RobotModel robot = robot::RobotModel::Load(paths.models, scenario.robot, scenario.X_WB);
-  const std::string mjcf = robot::MjcfPath(paths.models, scenario.robot);
+  const ModelFolders models = paths.all_models();
+  CheckRobotIsThere(scenario, models);
+  robot::RobotModel robot = RobotOf(scenario, models);
+  const std::string mjcf = RobotMjcf(scenario, models);
   sim::CheckAgreement(robot, *sim::LoadArmFile(mjcf), mjcf);
   bench::ResolveTask(scenario, robot);
   return {std::move(scenario), std::move(robot)};
 }
 
 }  // namespace
+
+robot::RobotModel RobotOf(const scenarios::Scenario& scenario, const ModelFolders& models) {
+  return robot::RobotModel::FromFolder(RobotFolder(scenario, models), scenario.robot_variant,
+                                       scenario.X_WB);
+}
 
 std::vector<std::string> KnowledgeWords() {
   std::vector<std::string> words;
@@ -174,7 +184,7 @@ Scene LoadScene(const std::string& name, const Overrides& overrides, const DataP
   scenarios::Scenario scenario = LoadOverridden(name, overrides, paths);
   if (scenario.robot.empty()) {
     bench::EpisodeWorld world = bench::MakeEpisodeWorld(
-        std::make_shared<sim::Simulation>(scenario, paths.models, &MakeSensor));
+        std::make_shared<sim::Simulation>(scenario, paths.all_models(), &MakeSensor));
     return {std::move(scenario), std::move(world)};
   }
   Problem problem = AddRobot(std::move(scenario), paths);
@@ -183,11 +193,11 @@ Scene LoadScene(const std::string& name, const Overrides& overrides, const DataP
 }
 
 bench::WorldFactory SimulatedWorlds(const DataPaths& paths) {
-  return
-      [models = paths.models](const scenarios::Scenario& scenario, const robot::RobotModel& robot) {
-        return bench::MakeEpisodeWorld(
-            std::make_shared<sim::Simulation>(scenario, robot, models, &MakeSensor));
-      };
+  return [models = paths.all_models()](const scenarios::Scenario& scenario,
+                                       const robot::RobotModel& robot) {
+    return bench::MakeEpisodeWorld(
+        std::make_shared<sim::Simulation>(scenario, robot, models, &MakeSensor));
+  };
 }
 
 }  // namespace sidestep::cli

@@ -33,6 +33,9 @@ struct Problem {
   robot::RobotModel robot;
 };
 
+/// The robot of a scenario that has one. @throws InputError.
+robot::RobotModel RobotOf(const scenarios::Scenario& scenario, const ModelFolders& models);
+
 /// Reads, overrides, loads the robot and judges everything that a person wrote, every name too.
 /// @throws InputError.
 Problem LoadProblem(const std::string& scenario, const Overrides& overrides,

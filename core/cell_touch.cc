@@ -5,12 +5,29 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
+
+#include "sidestep/core/convex_polytope.h"
 
 namespace sidestep {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+
+// Pairs of CubeTouch::Corners that differ along one axis.
+constexpr std::array<std::pair<std::size_t, std::size_t>, 12> kCubeEdges = {{{0, 1},
+                                                                             {0, 2},
+                                                                             {0, 4},
+                                                                             {1, 3},
+                                                                             {1, 5},
+                                                                             {2, 3},
+                                                                             {2, 6},
+                                                                             {3, 7},
+                                                                             {4, 5},
+                                                                             {4, 6},
+                                                                             {5, 7},
+                                                                             {6, 7}}};
 
 // The least distance from the origin to points of the convex hull of others, 0 if it is inside.
 template <std::size_t kMost>
@@ -104,6 +121,16 @@ Vector3d CubeTouch::NearestInCube(const Vector3d& p_OC, const Vector3d& p_OQ) co
   return p_OC + R_OW_ * p_CQ_W.cwiseMax(-half_m_).cwiseMin(half_m_);
 }
 
+std::array<Vector3d, 8> CubeTouch::Corners(const Vector3d& p_OC) const {
+  std::array<Vector3d, 8> corners;
+  for (std::size_t n = 0; n < 8; ++n) {
+    corners[n] = p_OC + R_OW_ * Vector3d((n & 1) != 0 ? half_m_ : -half_m_,
+                                         (n & 2) != 0 ? half_m_ : -half_m_,
+                                         (n & 4) != 0 ? half_m_ : -half_m_);
+  }
+  return corners;
+}
+
 // By separating axes: S. Gottschalk, M. Lin, D. Manocha, "OBBTree", SIGGRAPH 1996, section 5.
 bool CubeTouch::Reaches(const Box& box, const Vector3d& p_OC) const {
   const Vector3d half = box.size_m / 2;
@@ -170,26 +197,18 @@ bool CubeTouch::Reaches(const Cylinder& cylinder, const Vector3d& p_OC) const {
   } else if (std::abs(p_OC.z()) <= half_length_m) {
     return true;
   }
-  std::array<Vector3d, 8> corners;
-  for (std::size_t n = 0; n < 8; ++n) {
-    corners[n] = p_OC + R_OW_ * Vector3d((n & 1) != 0 ? half_m_ : -half_m_,
-                                         (n & 2) != 0 ? half_m_ : -half_m_,
-                                         (n & 4) != 0 ? half_m_ : -half_m_);
-  }
+  const std::array<Vector3d, 8> corners = Corners(p_OC);
   std::array<Vector2d, 32> seen;  // corners between the planes, and where edges pass those
   std::size_t num_seen = 0;
   for (const Vector3d& corner : corners) {
     if (std::abs(corner.z()) <= half_length_m) seen[num_seen++] = corner.head<2>();
   }
-  for (std::size_t n = 0; n < 8; ++n) {
-    for (const std::size_t axis : {1, 2, 4}) {
-      if ((n & axis) != 0) continue;
-      const Vector3d &a = corners[n], &b = corners[n | axis];
-      for (const double end_m : {-half_length_m, half_length_m}) {
-        if ((a.z() < end_m) == (b.z() < end_m)) continue;
-        const double along = (end_m - a.z()) / (b.z() - a.z());
-        seen[num_seen++] = a.head<2>() + along * (b.head<2>() - a.head<2>());
-      }
+  for (const auto& [from, to] : kCubeEdges) {
+    const Vector3d &a = corners[from], &b = corners[to];
+    for (const double end_m : {-half_length_m, half_length_m}) {
+      if ((a.z() < end_m) == (b.z() < end_m)) continue;
+      const double along = (end_m - a.z()) / (b.z() - a.z());
+      seen[num_seen++] = a.head<2>() + along * (b.head<2>() - a.head<2>());
     }
   }
   return num_seen > 0 && DistanceToHull(seen, num_seen) <= radius_m;
@@ -206,6 +225,47 @@ bool CubeTouch::Reaches(const Ellipsoid& ellipsoid, const Vector3d& p_OC) const 
   const Vector3d center = p_OC.cwiseQuotient(axes);
   const Eigen::Matrix3d half_edges = axes.cwiseInverse().asDiagonal() * (half_m_ * R_OW_);
   return LeastOverCube(center, half_edges, 1) <= 1;
+}
+
+// Two convex polyhedra share a point iff an edge of one meets the other.
+bool CubeTouch::Reaches(const ConvexMesh& mesh, const Vector3d& p_OC) const {
+  const ConvexPolytope& hull = *mesh.hull;
+  bool has_center = true;
+  for (const ConvexPolytope::Triangle& face : hull.triangles()) {
+    const double height_m = face.normal.dot(p_OC) - face.offset_m;
+    if (height_m > half_m_ * (R_OW_.transpose() * face.normal).cwiseAbs().sum()) return false;
+    has_center = has_center && height_m <= 0;
+  }
+  if (has_center) return true;
+  // The part of a way from a to b for which all heights, which change evenly, are at most 0.
+  const auto cut = [](double at_a, double at_b, double& begin, double& end) {
+    if (at_a > 0 && at_b > 0) end = -1;
+    if (at_a > 0 && at_b <= 0) begin = std::max(begin, at_a / (at_a - at_b));
+    if (at_a <= 0 && at_b > 0) end = std::min(end, at_a / (at_a - at_b));
+  };
+  const auto from_cube = [&](int vertex) -> Vector3d {
+    return R_OW_.transpose() * (hull.vertices()[static_cast<std::size_t>(vertex)] - p_OC);
+  };
+  for (const ConvexPolytope::Edge& edge : hull.edges()) {
+    const Vector3d a = from_cube(edge.from), b = from_cube(edge.to);
+    double begin = 0, end = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      cut(a(axis) - half_m_, b(axis) - half_m_, begin, end);
+      cut(-half_m_ - a(axis), -half_m_ - b(axis), begin, end);
+    }
+    if (begin <= end) return true;
+  }
+  const std::array<Vector3d, 8> corners = Corners(p_OC);
+  for (const auto& [from, to] : kCubeEdges) {
+    double begin = 0, end = 1;
+    for (const ConvexPolytope::Triangle& face : hull.triangles()) {
+      cut(face.normal.dot(corners[from]) - face.offset_m,
+          face.normal.dot(corners[to]) - face.offset_m, begin, end);
+      if (begin > end) break;
+    }
+    if (begin <= end) return true;
+  }
+  return false;
 }
 
 }  // namespace sidestep

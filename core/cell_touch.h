@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 
 #include "sidestep/core/shape.h"
 
@@ -32,7 +33,10 @@ class CubeTouch {
   bool Reaches(const Capsule& capsule, const Eigen::Vector3d& p_OC) const;
   bool Reaches(const Cylinder& cylinder, const Eigen::Vector3d& p_OC) const;
   bool Reaches(const Ellipsoid& ellipsoid, const Eigen::Vector3d& p_OC) const;
+  bool Reaches(const ConvexMesh& mesh, const Eigen::Vector3d& p_OC) const;
 
+  // Of the cube around C, in O; the bits of a number say on which side of C along x, y, z.
+  std::array<Eigen::Vector3d, 8> Corners(const Eigen::Vector3d& p_OC) const;
   // The point of the cube around C that is nearest to a point.
   Eigen::Vector3d NearestInCube(const Eigen::Vector3d& p_OC, const Eigen::Vector3d& p_OQ) const;
 

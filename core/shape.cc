@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sidestep/core/convex_polytope.h"
+
 namespace sidestep {
 namespace {
 
@@ -75,6 +77,7 @@ double SignedDistance(const Shape& shape, const Eigen::Vector3d& p_OQ) {
                         [&](const Ellipsoid& ellipsoid) {
                           return EllipsoidDistance(ellipsoid.semi_axes_m, p_OQ);
                         },
+                        [&](const ConvexMesh& mesh) { return mesh.hull->SignedDistance(p_OQ); },
                     },
                     shape);
 }
@@ -93,8 +96,14 @@ Eigen::Vector3d HalfExtents(const Shape& shape) {
             return {c.radius_m, c.radius_m, c.length_m / 2};
           },
           [](const Ellipsoid& ellipsoid) -> Eigen::Vector3d { return ellipsoid.semi_axes_m; },
+          [](const ConvexMesh& mesh) -> Eigen::Vector3d { return mesh.hull->half_extents_m(); },
       },
       shape);
+}
+
+double Thickness(const Shape& shape) {
+  const ConvexMesh* const mesh = std::get_if<ConvexMesh>(&shape);
+  return mesh != nullptr ? mesh->hull->thickness_m() : 2 * HalfExtents(shape).minCoeff();
 }
 
 std::string ShapeName(const Shape& shape) {
@@ -102,7 +111,8 @@ std::string ShapeName(const Shape& shape) {
       Overloaded{[](const Box&) { return "box"; }, [](const Sphere&) { return "sphere"; },
                  [](const Capsule&) { return "capsule"; },
                  [](const Cylinder&) { return "cylinder"; },
-                 [](const Ellipsoid&) { return "ellipsoid"; }},
+                 [](const Ellipsoid&) { return "ellipsoid"; },
+                 [](const ConvexMesh&) { return "convex_mesh"; }},
       shape);
 }
 

@@ -1,12 +1,16 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <string>
 #include <variant>
 
 namespace sidestep {
 
-/// Solids, each centred on its own frame O. Sizes in metres, all > 0.
+class ConvexPolytope;
+
+/// Solids, each centred on its own frame O but for the convex mesh, which lies where its vertices
+/// do. Sizes in metres, all > 0.
 struct Box {
   Eigen::Vector3d size_m;  ///< full edge lengths along x, y, z
 };
@@ -25,7 +29,11 @@ struct Ellipsoid {
   Eigen::Vector3d semi_axes_m;
 };
 
-using Shape = std::variant<Box, Sphere, Capsule, Cylinder, Ellipsoid>;
+struct ConvexMesh {
+  std::shared_ptr<const ConvexPolytope> hull;  ///< never null (core/convex_polytope.h)
+};
+
+using Shape = std::variant<Box, Sphere, Capsule, Cylinder, Ellipsoid, ConvexMesh>;
 
 /// The exact signed distance from a point to the shape's surface [m]; negative inside.
 /// @param p_OQ [m] the point in the shape's own frame, finite.
@@ -33,8 +41,12 @@ using Shape = std::variant<Box, Sphere, Capsule, Cylinder, Ellipsoid>;
 /// Ellipsoid, or a Hyperellipsoid" (Geometric Tools, 2013); exact to a few ulps.
 double SignedDistance(const Shape& shape, const Eigen::Vector3d& p_OQ);
 
-/// Half the extents of the smallest box around the shape, along its own axes [m].
+/// Half the extents of the smallest box around the shape, along its own axes and centred on its
+/// frame [m].
 Eigen::Vector3d HalfExtents(const Shape& shape);
+
+/// The least extent of the shape [m]; of a convex mesh across one of its faces.
+double Thickness(const Shape& shape);
 
 /// "box", "sphere", ... as written in scenario files.
 std::string ShapeName(const Shape& shape);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sidestep/core/convex_polytope.h"
+
 namespace sidestep {
 namespace {
 
@@ -53,6 +55,10 @@ struct Gradient {
       slope(a) = SignedDistance(ellipsoid, p + step) - SignedDistance(ellipsoid, p - step);
     }
     return Direction(slope, Eigen::Vector3d::UnitX());
+  }
+
+  Eigen::Vector3d operator()(const ConvexMesh& mesh) const {
+    return mesh.hull->Nearest(p).gradient;
   }
 };
 

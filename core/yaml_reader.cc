@@ -366,6 +366,17 @@ bool YamlReader::IsScalar(const std::string& key) const {
   return found != nullptr && found->kind == Kind::kScalar;
 }
 
+bool YamlReader::IsMap(const std::string& key) const {
+  const YamlValue* const found = node_->Find(key);
+  return found != nullptr && found->kind == Kind::kMap;
+}
+
+bool YamlReader::IsListOfMaps(const std::string& key) const {
+  const YamlValue* const found = node_->Find(key);
+  return found != nullptr && found->kind == Kind::kList && !found->children.empty() &&
+         found->children.front().kind == Kind::kMap;
+}
+
 YamlReader YamlReader::GetMap(const std::string& key) const {
   return YamlReader(node_->Child(node_->Require(key), key));
 }

@@ -71,6 +71,10 @@ class YamlReader {
 
   /// True if the value of `key` is a scalar (and not a list or a map).
   bool IsScalar(const std::string& key) const;
+  /// True if the value of `key` is a map.
+  bool IsMap(const std::string& key) const;
+  /// True if the value of `key` is a list whose first item is a map.
+  bool IsListOfMaps(const std::string& key) const;
 
   YamlReader GetMap(const std::string& key) const;
   std::vector<YamlReader> GetMaps(const std::string& key) const;  ///< a list of maps

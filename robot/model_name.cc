@@ -8,19 +8,19 @@
 
 namespace sidestep::robot {
 
-std::vector<std::string> VariantNames(const std::string& models_dir, const std::string& folder) {
+std::vector<std::string> VariantNames(const std::string& folder) {
   namespace fs = std::filesystem;
   std::vector<std::string> names;
   std::error_code error;
-  for (const fs::directory_entry& entry :
-       fs::directory_iterator(fs::path(models_dir) / folder, error)) {
+  const std::string robot = fs::path(folder).filename().string();
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
     if (entry.path().extension() != ".yaml") continue;
     try {
       if (!YamlReader::FromFile(entry.path().string()).Has("extends")) continue;
     } catch (const InputError&) {  // whoever asks for it by name is told
       continue;
     }
-    names.push_back(folder + ":" + entry.path().stem().string());
+    names.push_back(robot + ":" + entry.path().stem().string());
   }
   std::sort(names.begin(), names.end());
   return names;

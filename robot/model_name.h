@@ -16,13 +16,13 @@ inline std::string ModelVariant(const std::string& name) {
   return colon == std::string::npos ? "" : name.substr(colon + 1);
 }
 
-/// `<models_dir>/<folder>/<folder>.xml`: a variant has the body of its robot.
-inline std::string MjcfPath(const std::string& models_dir, const std::string& name) {
-  return models_dir + "/" + ModelFolder(name) + "/" + ModelFolder(name) + ".xml";
+/// The file in the robot's folder that describes it; an empty variant: the robot itself.
+inline std::string DescriptionFile(const std::string& variant) {
+  return (variant.empty() ? "robot" : variant) + ".yaml";
 }
 
-/// The variants of a robot, sorted, as `panda:covered`: the files beside its robot.yaml that extend
-/// a robot.
-std::vector<std::string> VariantNames(const std::string& models_dir, const std::string& folder);
+/// The variants of the robot in a folder, sorted, as `panda:covered`: the files beside its
+/// robot.yaml that extend a robot.
+std::vector<std::string> VariantNames(const std::string& folder);
 
 }  // namespace sidestep::robot

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sidestep/core/model_folders.h"
 #include "sidestep/core/pose.h"
 #include "sidestep/robot/joint.h"
 #include "sidestep/robot/kinematics.h"
@@ -53,14 +54,18 @@ struct SphereCenters {
 /// that moves by itself, in the order of the joints: rad, or m of one that slides.
 class RobotModel {
  public:
-  /// Reads `<models_dir>/<name>/robot.yaml` (its keys: docs/robots.md).
+  /// Reads the robot.yaml (its keys: docs/robots.md) of the folder of this name,
+  /// or of a variant of it (model_name.h).
   /// @throws InputError FILE:LINE: KEY: WHY; for a name without such a file, the known names.
-  static RobotModel Load(const std::string& models_dir, const std::string& name, const Pose& X_WB);
+  static RobotModel Load(const ModelFolders& models, const std::string& name, const Pose& X_WB);
+  /// The same from a robot's folder, whose name is the robot's. @param variant may be empty.
+  static RobotModel FromFolder(const std::string& folder, const std::string& variant,
+                               const Pose& X_WB);
   /// The same from a file of any name.
   static RobotModel FromFile(const std::string& path, const Pose& X_WB);
 
-  /// The robots there are: the folders of `models_dir` that hold a robot.yaml, sorted.
-  static std::vector<std::string> ListNames(const std::string& models_dir);
+  /// The robots there are: those whose folder holds a robot.yaml, sorted.
+  static std::vector<std::string> ListNames(const ModelFolders& models);
 
   /// Numbers of a configuration; more are refused.
   static constexpr int kMaxJoints = 16;

@@ -309,36 +309,31 @@ Eigen::VectorXd ReadGains(const YamlReader& map, const std::string& key, int num
 
 }  // namespace
 
-std::vector<std::string> RobotModel::ListNames(const std::string& models_dir) {
-  namespace fs = std::filesystem;
-  std::vector<std::string> names;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(models_dir, error)) {
-    if (fs::exists(entry.path() / "robot.yaml", error)) {
-      names.push_back(entry.path().filename().string());
-    }
-  }
-  std::sort(names.begin(), names.end());
-  return names;
+std::vector<std::string> RobotModel::ListNames(const ModelFolders& models) {
+  return models.NamesWith("robot.yaml");
 }
 
-RobotModel RobotModel::Load(const std::string& models_dir, const std::string& name,
-                            const Pose& X_WB) {
-  const std::vector<std::string> names = ListNames(models_dir);
-  const std::string folder = ModelFolder(name), variant = ModelVariant(name);
+RobotModel RobotModel::Load(const ModelFolders& models, const std::string& name, const Pose& X_WB) {
+  const std::vector<std::string> names = ListNames(models);
+  const std::string folder = ModelFolder(name);
   if (std::find(names.begin(), names.end(), folder) == names.end()) {
-    throw InputError(models_dir, "holds no robot '" + folder +
-                                     "' (known: " + (names.empty() ? "none" : Joined(names)) + ")");
+    throw InputError(Joined(models.folders()), "holds no robot '" + folder + "' (known: " +
+                                                   (names.empty() ? "none" : Joined(names)) + ")");
   }
-  const std::string path =
-      models_dir + "/" + folder + "/" + (variant.empty() ? "robot" : variant) + ".yaml";
-  if (std::error_code error; !std::filesystem::exists(path, error)) {
-    const std::vector<std::string> variants = VariantNames(models_dir, folder);
-    throw InputError(models_dir, "holds no variant '" + name + "' (known: " +
-                                     (variants.empty() ? "none" : Joined(variants)) + ")");
+  return FromFolder(models.Find(folder).value(), ModelVariant(name), X_WB);
+}
+
+RobotModel RobotModel::FromFolder(const std::string& folder, const std::string& variant,
+                                  const Pose& X_WB) {
+  const std::string path = folder + "/" + DescriptionFile(variant);
+  const std::string name = std::filesystem::path(folder).filename().string();
+  if (std::error_code error; !variant.empty() && !std::filesystem::exists(path, error)) {
+    const std::vector<std::string> variants = VariantNames(folder);
+    throw InputError(folder, "holds no variant '" + name + ":" + variant + "' (known: " +
+                                 (variants.empty() ? "none" : Joined(variants)) + ")");
   }
   RobotModel model = FromFile(path, X_WB);
-  if (model.name() != folder) {
+  if (model.name() != name) {
     throw InputError(path, "name: must be the folder's, is '" + model.name() + "'");
   }
   return model;

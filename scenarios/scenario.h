@@ -11,6 +11,7 @@
 
 #include "sidestep/core/grid.h"
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/model_folders.h"
 #include "sidestep/core/pose.h"
 #include "sidestep/core/shape.h"
 #include "sidestep/core/time.h"
@@ -23,12 +24,14 @@ namespace sidestep::scenarios {
 /// The planner's margin is at most so many cells of the workspace; it pads objects' fields.
 inline constexpr int kMaxMarginCells = 256;
 
-/// A body that never moves: a box.
-struct StaticBox {
+/// A body that never moves.
+struct StaticObstacle {
   std::string name;
   Pose X_WO;
-  Eigen::Vector3d size_m;
-  std::vector<Tag> tags = {};  ///< printed on it
+  Shape shape;
+  std::vector<Tag> tags = {};  ///< printed on it, which is then a box
+  /// Its path in the file, `static_boxes[0]` or `static_obstacles[0]`; empty if it is of none.
+  std::string path = {};
 };
 
 // Every motion has a speed_m_s (>= 0), rests at its start until begin_at_s, and stands still from
@@ -160,10 +163,13 @@ struct Scenario {
   std::string description;
   std::string file;  ///< where it was read
 
-  std::string robot;  ///< empty: a world without one; then there is no task, planner, ... either
+  std::string robot;  ///< its name; empty: a world without one, and without task, planner, ...
+  /// The robot's folder as the file says it, from its own folder on; empty: that of its name, where
+  /// robots are looked for.
+  std::string robot_path;
+  std::string robot_variant;  ///< of its description, as `covered` of `panda:covered`; may be empty
   Pose X_WB;          ///< of the robot's base
-  std::string
-      mount;  ///< static box the robot stands on: its mount links may touch it; empty: the floor
+  std::string mount;  ///< what the robot stands on: its mount links may touch it; empty: the floor
   std::string start_name, goal_name;  ///< empty when given as joints
   Eigen::VectorXd q_start, q_goal;    ///< filled when given as joints; else looked up by the name
   double dwell_s = 0;  ///< how long to stay at the goal for it to be reached; at most the horizon
@@ -176,7 +182,7 @@ struct Scenario {
   double floor_m = 0;
 
   StaticWorld static_world = StaticWorld::kOccupancy;
-  std::vector<StaticBox> static_boxes;
+  std::vector<StaticObstacle> static_obstacles;  ///< those of static_boxes first
   std::vector<MovingObstacle> moving_obstacles;
 
   std::string planner;
@@ -236,6 +242,16 @@ InputError WrongValue(const Scenario& scenario, const std::string& key, const st
 /// @throws InputError, as the reader would, if a number would be more than a scenario file may say;
 ///   std::invalid_argument for a factor that is negative or not finite.
 void ScaleSpeeds(Scenario& scenario, double factor);
+
+/// The hull of points, as a scenario may hold it: no thinner than 1/10000 of its largest
+/// coordinate.
+/// @throws std::invalid_argument with what is wrong, as of ConvexPolytope.
+ConvexMesh MakeConvexMesh(const std::vector<Eigen::Vector3d>& vertices_m);
+
+/// The folder of the scenario's robot. @throws InputError at `robot.model` if there is none.
+std::string RobotFolder(const Scenario& scenario, const ModelFolders& models);
+/// Its MJCF, in there.
+std::string RobotMjcf(const Scenario& scenario, const ModelFolders& models);
 
 /// Where an obstacle is at `t`. Before 0 it rests at its start.
 Pose PoseAt(const MovingObstacle& obstacle, EpisodeTime t);

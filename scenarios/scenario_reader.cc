@@ -5,7 +5,10 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <stdexcept>
+#include <utility>
 
+#include "sidestep/core/convex_polytope.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
 #include "sidestep/core/utf8.h"
@@ -36,11 +39,34 @@ constexpr const char* kSharedPlannerKeys[] = {
     "name",           "epsilon_m",       "velocity_scale",  "acceleration_scale", "growth_sigmas",
     "growth_limit_m", "position_limits", "velocity_limits", "acceleration_limits"};
 constexpr double kMostSigmas = 100;
-constexpr double kFarthest_m = 1e6;  // beyond, positions have no tenth of a micrometre
+constexpr double kThinnestMesh = 1e-4;  // of its size: the simulator has 7 digits for each vertex
+constexpr double kFarthest_m = 1e6;     // beyond, positions have no tenth of a micrometre
+
+// A name, or a path to a folder, whose own name is the robot's; and a variant, if there is a colon.
+void ReadModel(const YamlReader& map, Scenario& scenario) {
+  std::string model = map.GetString("model");
+  const std::size_t colon = model.rfind(':');
+  if (colon != std::string::npos && model.find('/', colon) == std::string::npos) {
+    scenario.robot_variant = model.substr(colon + 1);
+    model.resize(colon);
+    if (scenario.robot_variant.empty()) map.Fail("model", "must name a variant behind the colon");
+  }
+  if (model.find('/') == std::string::npos) {
+    scenario.robot = model;
+    return;
+  }
+  scenario.robot_path = model;
+  std::filesystem::path folder = std::filesystem::path(model).lexically_normal();
+  if (!folder.has_filename()) folder = folder.parent_path();
+  scenario.robot = folder.filename().string();
+  if (scenario.robot.empty() || scenario.robot == "." || scenario.robot == "..") {
+    map.Fail("model", "must be a path to a robot's folder and end in its name, is '" + model + "'");
+  }
+}
 
 void ReadRobot(const YamlReader& top, Scenario& scenario) {
   const YamlReader map = top.GetMap("robot");
-  scenario.robot = map.GetString("model");
+  ReadModel(map, scenario);
   scenario.X_WB = map.GetPose("base");
   if (scenario.X_WB.translation().cwiseAbs().maxCoeff() > kFarthest_m) {
     throw WrongValue(scenario, "robot.base.position_m", "must be within 1000 km");
@@ -120,22 +146,6 @@ std::string ReadName(const YamlReader& map, std::set<std::string>& names) {
   return name;
 }
 
-void ReadStaticBoxes(const YamlReader& top, Scenario& scenario, std::set<std::string>& names) {
-  if (!top.Has("static_boxes")) return;
-  for (const YamlReader& map : top.GetMaps("static_boxes")) {
-    StaticBox box;
-    box.name = ReadName(map, names);
-    const Eigen::Vector3d center = map.GetVector3("center_m");
-    const Eigen::Vector3d rpy =
-        map.Has("rpy_rad") ? map.GetVector3("rpy_rad") : Eigen::Vector3d(0, 0, 0);
-    box.X_WO = Pose::FromRollPitchYaw(rpy, center);
-    box.size_m = map.GetPositiveVector3("size_m");
-    box.tags = ReadTags(map, box.size_m);
-    map.CheckNoUnknownKeys();
-    scenario.static_boxes.push_back(box);
-  }
-}
-
 // The one key of a map like {box: {...}}.
 std::string ReadKind(const YamlReader& map, const std::string& key, const YamlReader& parent,
                      const std::vector<std::string>& kinds) {
@@ -147,10 +157,26 @@ std::string ReadKind(const YamlReader& map, const std::string& key, const YamlRe
   return keys[0];
 }
 
+ConvexMesh ReadConvexMesh(const YamlReader& body) {
+  std::vector<Eigen::Vector3d> vertices;
+  for (const std::vector<double>& row : body.GetRows("vertices_m")) {
+    if (row.size() != 3) {
+      body.Fail("vertices_m[" + std::to_string(vertices.size()) + "]",
+                "must have 3 numbers, has " + std::to_string(row.size()));
+    }
+    vertices.emplace_back(row[0], row[1], row[2]);
+  }
+  try {
+    return MakeConvexMesh(vertices);
+  } catch (const std::invalid_argument& fault) {
+    body.Fail("vertices_m", fault.what());
+  }
+}
+
 Shape ReadShape(const YamlReader& parent) {
   const YamlReader map = parent.GetMap("shape");
-  const std::string kind =
-      ReadKind(map, "shape", parent, {"box", "sphere", "capsule", "cylinder", "ellipsoid"});
+  const std::string kind = ReadKind(
+      map, "shape", parent, {"box", "sphere", "capsule", "cylinder", "ellipsoid", "convex_mesh"});
   const YamlReader body = map.GetMap(kind);
   Shape shape;
   if (kind == "box") shape = Box{body.GetPositiveVector3("size_m")};
@@ -161,8 +187,52 @@ Shape ReadShape(const YamlReader& parent) {
     shape = Cylinder{body.GetPositive("radius_m"), body.GetPositive("length_m")};
   }
   if (kind == "ellipsoid") shape = Ellipsoid{body.GetPositiveVector3("semi_axes_m")};
+  if (kind == "convex_mesh") shape = ReadConvexMesh(body);
   body.CheckNoUnknownKeys();
   return shape;
+}
+
+Eigen::Vector3d ReadTurn(const YamlReader& map) {
+  return map.Has("rpy_rad") ? map.GetVector3("rpy_rad") : Eigen::Vector3d(0, 0, 0);
+}
+
+// Of what an appearance does not hide.
+std::vector<Tag> ReadTagsOf(const Shape& shape, const YamlReader& map) {
+  if (!map.Has("tags")) return {};
+  const Box* const box = std::get_if<Box>(&shape);
+  if (box == nullptr) map.Fail("tags", "are for boxes; this is no box", "shape");
+  return ReadTags(map, box->size_m);
+}
+
+void ReadStaticBoxes(const YamlReader& top, Scenario& scenario, std::set<std::string>& names) {
+  if (!top.Has("static_boxes")) return;
+  for (const YamlReader& map : top.GetMaps("static_boxes")) {
+    StaticObstacle box;
+    box.path = "static_boxes[" + std::to_string(scenario.static_obstacles.size()) + "]";
+    box.name = ReadName(map, names);
+    const Eigen::Vector3d center = map.GetVector3("center_m");
+    box.X_WO = Pose::FromRollPitchYaw(ReadTurn(map), center);
+    box.shape = Box{map.GetPositiveVector3("size_m")};
+    box.tags = ReadTagsOf(box.shape, map);
+    map.CheckNoUnknownKeys();
+    scenario.static_obstacles.push_back(std::move(box));
+  }
+}
+
+void ReadStaticObstacles(const YamlReader& top, Scenario& scenario, std::set<std::string>& names) {
+  if (!top.Has("static_obstacles")) return;
+  std::size_t number = 0;
+  for (const YamlReader& map : top.GetMaps("static_obstacles")) {
+    StaticObstacle obstacle;
+    obstacle.path = "static_obstacles[" + std::to_string(number++) + "]";
+    obstacle.name = ReadName(map, names);
+    obstacle.shape = ReadShape(map);
+    const Eigen::Vector3d position = map.GetVector3("position_m");
+    obstacle.X_WO = Pose::FromRollPitchYaw(ReadTurn(map), position);
+    obstacle.tags = ReadTagsOf(obstacle.shape, map);
+    map.CheckNoUnknownKeys();
+    scenario.static_obstacles.push_back(std::move(obstacle));
+  }
 }
 
 Eigen::Vector3d ReadDirection(const YamlReader& body) {
@@ -343,31 +413,26 @@ void SeedMotions(Scenario& scenario) {
 }
 
 std::vector<Tag> ReadTagsOfObstacle(const YamlReader& map, const MovingObstacle& obstacle) {
-  if (!map.Has("tags")) return {};
-  const Box* const box = std::get_if<Box>(&obstacle.shape);
-  if (box == nullptr) map.Fail("tags", "are for boxes; this is no box", "shape");
-  if (!obstacle.appearance.empty()) {
+  const bool is_box = std::holds_alternative<Box>(obstacle.shape);
+  if (map.Has("tags") && is_box && !obstacle.appearance.empty()) {
     map.Fail("tags", "are printed on a box, and an appearance hides it", "appearance");
   }
-  return ReadTags(map, box->size_m);
+  return ReadTagsOf(obstacle.shape, map);
 }
 
 // One that is there twice says nothing about where it is.
 void CheckTagIds(const Scenario& scenario) {
   std::set<int> ids;
-  const auto check = [&](const std::string& list, std::size_t i, const std::vector<Tag>& tags) {
+  const auto check = [&](const std::string& path, const std::vector<Tag>& tags) {
     for (std::size_t k = 0; k < tags.size(); ++k) {
       if (ids.insert(tags[k].id).second) continue;
-      throw WrongValue(scenario,
-                       list + "[" + std::to_string(i) + "].tags[" + std::to_string(k) + "].id",
+      throw WrongValue(scenario, path + ".tags[" + std::to_string(k) + "].id",
                        std::to_string(tags[k].id) + " is another tag's");
     }
   };
-  for (std::size_t i = 0; i < scenario.static_boxes.size(); ++i) {
-    check("static_boxes", i, scenario.static_boxes[i].tags);
-  }
+  for (const StaticObstacle& fixed : scenario.static_obstacles) check(fixed.path, fixed.tags);
   for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
-    check("moving_obstacles", i, scenario.moving_obstacles[i].tags);
+    check("moving_obstacles[" + std::to_string(i) + "]", scenario.moving_obstacles[i].tags);
   }
 }
 
@@ -378,7 +443,7 @@ void ReadMovingObstacles(const YamlReader& top, const std::optional<std::string>
     MovingObstacle obstacle;
     obstacle.name = ReadName(map, names);
     obstacle.shape = ReadShape(map);
-    obstacle.rpy_rad = map.Has("rpy_rad") ? map.GetVector3("rpy_rad") : Eigen::Vector3d(0, 0, 0);
+    obstacle.rpy_rad = ReadTurn(map);
     ReadMotion(map, folder, obstacle);
     obstacle.appearance = map.Has("appearance") ? map.GetString("appearance") : "";
     obstacle.tags = ReadTagsOfObstacle(map, obstacle);
@@ -603,6 +668,7 @@ Scenario ReadSettled(const YamlReader& top, const Origin& origin) {
       top.Has("static_world") && top.GetChoice("static_world", {"occupancy", "exact"}) == "exact";
   scenario.static_world = exact ? StaticWorld::kExact : StaticWorld::kOccupancy;
   ReadStaticBoxes(top, scenario, names);
+  ReadStaticObstacles(top, scenario, names);
   ReadMovingObstacles(top, folder, scenario, names);
   CheckTagIds(scenario);
   if (has_robot) {
@@ -616,11 +682,11 @@ Scenario ReadSettled(const YamlReader& top, const Origin& origin) {
   top.Has("choices");  // known, though they have been taken out
   top.CheckNoUnknownKeys();
 
-  const bool known = std::any_of(scenario.static_boxes.begin(), scenario.static_boxes.end(),
-                                 [&](const StaticBox& box) { return box.name == scenario.mount; });
-  if (!scenario.mount.empty() && !known) {
+  const auto is_mount = [&](const StaticObstacle& one) { return one.name == scenario.mount; };
+  const auto& fixed = scenario.static_obstacles;
+  if (!scenario.mount.empty() && std::none_of(fixed.begin(), fixed.end(), is_mount)) {
     throw WrongValue(scenario, "robot.mount",
-                     "'" + scenario.mount + "' is no static box of this scenario");
+                     "'" + scenario.mount + "' is no static box or obstacle of this scenario");
   }
   return scenario;
 }
@@ -685,6 +751,30 @@ InputError WrongValue(const Scenario& scenario, const std::string& key, const st
     }
   }
   return InputError(scenario.file, LineOf(scenario, key), key, why);
+}
+
+ConvexMesh MakeConvexMesh(const std::vector<Eigen::Vector3d>& vertices_m) {
+  const auto hull = std::make_shared<const ConvexPolytope>(vertices_m);
+  if (hull->thickness_m() < kThinnestMesh * hull->half_extents_m().maxCoeff()) {
+    throw std::invalid_argument("are a solid that is too thin for its size");
+  }
+  return {hull};
+}
+
+std::string RobotFolder(const Scenario& scenario, const ModelFolders& models) {
+  if (!scenario.robot_path.empty()) {
+    const auto folder = std::filesystem::path(scenario.file).parent_path() / scenario.robot_path;
+    const std::string normal = folder.lexically_normal().string();
+    return normal.ends_with("/") ? normal.substr(0, normal.size() - 1) : normal;
+  }
+  const auto folder = models.Find(scenario.robot);
+  if (folder) return *folder;
+  throw WrongValue(scenario, "robot.model",
+                   "there is no '" + scenario.robot + "' in " + Joined(models.folders()));
+}
+
+std::string RobotMjcf(const Scenario& scenario, const ModelFolders& models) {
+  return RobotFolder(scenario, models) + "/" + scenario.robot + ".xml";
 }
 
 std::vector<std::string> ScenarioNames(const std::string& directory) {

@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "sidestep/core/convex_polytope.h"
 #include "sidestep/core/joined.h"
 #include "sidestep/scenarios/scenario.h"
 #include "sidestep/scenarios/yaml_text.h"
@@ -37,6 +38,9 @@ std::string ShapeText(const Shape& shape) {
   }
   if (const Ellipsoid* ellipsoid = std::get_if<Ellipsoid>(&shape)) {
     sizes = "semi_axes_m: " + List(ellipsoid->semi_axes_m);
+  }
+  if (const ConvexMesh* mesh = std::get_if<ConvexMesh>(&shape)) {
+    sizes = "vertices_m: [" + Joined(mesh->hull->vertices(), ", ", &List) + "]";
   }
   return "{" + ShapeName(shape) + ": {" + sizes + "}}";
 }
@@ -113,6 +117,27 @@ std::string MotionText(const MovingObstacle& obstacle) {
       obstacle.motion);
 }
 
+bool IsOfStaticBoxes(const StaticObstacle& obstacle) {
+  return obstacle.path.starts_with("static_boxes");
+}
+
+std::string StaticText(const Scenario& scenario) {
+  std::string boxes, others;
+  for (const StaticObstacle& one : scenario.static_obstacles) {
+    const std::string tags = one.tags.empty() ? "" : ", tags: " + ToYaml(one.tags);
+    const std::string name = "  - {name: " + Quoted(one.name) + ", ";
+    if (IsOfStaticBoxes(one)) {
+      boxes += name + PoseKeys("center_m", one.X_WO) +
+               ", size_m: " + List(std::get<Box>(one.shape).size_m) + tags + "}\n";
+    } else {
+      others += name + "shape: " + ShapeText(one.shape) + ", " + PoseKeys("position_m", one.X_WO) +
+                tags + "}\n";
+    }
+  }
+  return (boxes.empty() ? "" : "static_boxes:\n" + boxes) +
+         (others.empty() ? "" : "static_obstacles:\n" + others);
+}
+
 // The keys of an obstacle, in order, each with its value.
 std::vector<std::pair<std::string, std::string>> ObstacleKeys(const MovingObstacle& obstacle) {
   std::vector<std::pair<std::string, std::string>> keys = {{"name", Quoted(obstacle.name)},
@@ -131,7 +156,10 @@ std::string ConfigurationText(const std::string& name, const Eigen::VectorXd& q)
 }
 
 std::string RobotText(const Scenario& scenario) {
-  return "robot:\n  model: " + Quoted(scenario.robot) + "\n  base: {" +
+  const std::string model =
+      (scenario.robot_path.empty() ? scenario.robot : scenario.robot_path) +
+      (scenario.robot_variant.empty() ? "" : ":" + scenario.robot_variant);
+  return "robot:\n  model: " + Quoted(model) + "\n  base: {" +
          PoseKeys("position_m", scenario.X_WB) + "}\n" +
          (scenario.mount.empty() ? "" : "  mount: " + Quoted(scenario.mount) + "\n") +
          "task:\n  start: " + ConfigurationText(scenario.start_name, scenario.q_start) +
@@ -213,11 +241,7 @@ std::string ToYaml(const Scenario& scenario) {
   line("floor_m: " + Number(scenario.floor_m));
   line(std::string("static_world: ") +
        (scenario.static_world == StaticWorld::kExact ? "exact" : "occupancy"));
-  if (!scenario.static_boxes.empty()) line("static_boxes:");
-  for (const StaticBox& box : scenario.static_boxes) {
-    line("  - {name: " + Quoted(box.name) + ", " + PoseKeys("center_m", box.X_WO) + ", size_m: " +
-         List(box.size_m) + (box.tags.empty() ? "" : ", tags: " + ToYaml(box.tags)) + "}");
-  }
+  text += StaticText(scenario);
   if (!scenario.moving_obstacles.empty()) line("moving_obstacles:");
   for (const MovingObstacle& obstacle : scenario.moving_obstacles) {
     const char* dash = "- ";

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <set>
 #include <sstream>
+#include <stdexcept>
 #include <string_view>
 #include <vector>
 
@@ -130,27 +131,13 @@ class Walk {
         Fail(mesh, key, "is not taken: a mesh is given by its name and the vertices of its hull");
       }
     }
-    const char* const text = mesh.Attribute("vertex");
-    std::istringstream words(text == nullptr ? "" : text);
-    std::vector<double> numbers;
-    for (std::string word; words >> word;) {
-      char* end = nullptr;
-      numbers.push_back(std::strtod(word.c_str(), &end));
-      if (*end != '\0') Fail(mesh, "vertex", "must be numbers, holds '" + word + "'");
-    }
-    if (numbers.size() < 12 || numbers.size() % 3 != 0) {
-      Fail(mesh, "vertex",
-           "must be three numbers each of four vertices or more, are " +
-               std::to_string(numbers.size()));
-    }
-    const Eigen::Map<const Eigen::Matrix3Xd> vertices(
-        numbers.data(), 3, static_cast<Eigen::Index>(numbers.size() / 3));
-    num_vertices_ += static_cast<int>(vertices.cols());
-    if (num_vertices_ > kMostVertices) {
-      Fail(mesh, "vertex",
-           "with it meshes would have more than " + std::to_string(kMostVertices) + " vertices");
-    }
     try {
+      const Eigen::Matrix3Xd vertices = ReadMeshVertices(mesh.Attribute("vertex"));
+      num_vertices_ += static_cast<int>(vertices.cols());
+      if (num_vertices_ > kMostVertices) {
+        throw InputError("vertex", "with it meshes would have more than " +
+                                       std::to_string(kMostVertices) + " vertices");
+      }
       CheckMeshVertices(vertices);
     } catch (const InputError& error) {
       throw InputError(file_ + ":" + std::to_string(mesh.GetLineNum()), error.what());

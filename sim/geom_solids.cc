@@ -23,6 +23,24 @@ void TurnOutwards(ConvexHull* hull) {
 
 }  // namespace
 
+std::optional<Shape> ShapeOfGeom(const mjModel& model, int geom) {
+  const Eigen::Map<const Eigen::Vector3d> size(model.geom_size + 3 * geom);
+  switch (model.geom_type[geom]) {
+    case mjGEOM_SPHERE:
+      return Sphere{size(0)};
+    case mjGEOM_CAPSULE:
+      return Capsule{size(0), 2 * size(1)};
+    case mjGEOM_CYLINDER:
+      return Cylinder{size(0), 2 * size(1)};
+    case mjGEOM_ELLIPSOID:
+      return Ellipsoid{size};
+    case mjGEOM_BOX:
+      return Box{2 * size};
+    default:
+      return std::nullopt;
+  }
+}
+
 ConvexHull HullOfMesh(const mjModel& model, int mesh) {
   if (model.mesh_graphadr[mesh] < 0) {
     throw std::invalid_argument("HullOfMesh: the model holds no convex hull of this mesh");

@@ -4,7 +4,10 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <vector>
+
+#include "sidestep/core/shape.h"
 
 namespace sidestep::sim {
 
@@ -14,6 +17,9 @@ struct ConvexHull {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::array<int, 3>> faces;
 };
+
+/// A geom as one of core/shape.h, but for meshes; none for what that has not.
+std::optional<Shape> ShapeOfGeom(const mjModel& model, int geom);
 
 /// The convex hull that stands for a mesh wherever MuJoCo looks for contacts.
 /// @throws std::invalid_argument for a mesh without one: it belongs to no geom that can touch.

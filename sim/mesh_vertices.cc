@@ -1,10 +1,30 @@
 #include "sidestep/sim/mesh_vertices.h"
 
 #include <Eigen/Eigenvalues>
+#include <cstdlib>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "sidestep/core/input_error.h"
 
 namespace sidestep::sim {
+
+Eigen::Matrix3Xd ReadMeshVertices(const char* text) {
+  std::istringstream words(text == nullptr ? "" : text);
+  std::vector<double> numbers;
+  for (std::string word; words >> word;) {
+    char* end = nullptr;
+    numbers.push_back(std::strtod(word.c_str(), &end));
+    if (*end != '\0') throw InputError("vertex", "must be numbers, holds '" + word + "'");
+  }
+  if (numbers.size() < 12 || numbers.size() % 3 != 0) {
+    throw InputError("vertex", "must be three numbers each of four vertices or more, are " +
+                                   std::to_string(numbers.size()));
+  }
+  return Eigen::Map<const Eigen::Matrix3Xd>(numbers.data(), 3,
+                                            static_cast<Eigen::Index>(numbers.size() / 3));
+}
 
 void CheckMeshVertices(const Eigen::Matrix3Xd& vertices) {
   constexpr double kFarthest_m = 100, kFlat_m = 1e-5;

@@ -61,6 +61,20 @@ MujocoModelPtr LoadMujocoModel(const std::string& xml, const std::string& name) 
   return model;
 }
 
+MujocoModelPtr LoadMujocoFile(const std::string& path) {
+  InstallHandlers();
+  std::array<char, 1000> message = {};
+  MujocoModelPtr model;
+  try {
+    model.reset(
+        mj_loadXML(path.c_str(), nullptr, message.data(), static_cast<int>(message.size())));
+  } catch (const SimulationError& error) {
+    throw InputError(path, error.what());
+  }
+  if (!model) throw ErrorOf(path, message.data());
+  return model;
+}
+
 MujocoDataPtr MakeMujocoData(const mjModel& model) { return MujocoDataPtr(mj_makeData(&model)); }
 
 std::optional<std::string> MujocoWarning(const mjData& data) {

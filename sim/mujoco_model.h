@@ -37,6 +37,9 @@ std::string MujocoVersion();
 ///   and with the element or the object's name where MuJoCo tells them.
 MujocoModelPtr LoadMujocoModel(const std::string& xml, const std::string& name);
 
+/// Compiles an MJCF file, with all that it refers to. @throws InputError likewise.
+MujocoModelPtr LoadMujocoFile(const std::string& path);
+
 /// A state of `model` at its reference pose, nothing computed yet.
 MujocoDataPtr MakeMujocoData(const mjModel& model);
 

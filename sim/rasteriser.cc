@@ -73,24 +73,6 @@ std::vector<std::size_t> FillWhere(const CellRange& range, OccupancyGrid* grid, 
   return filled;
 }
 
-std::optional<Shape> ShapeOf(const mjModel& model, int geom) {
-  const Eigen::Map<const Eigen::Vector3d> size(model.geom_size + 3 * geom);
-  switch (model.geom_type[geom]) {
-    case mjGEOM_SPHERE:
-      return Sphere{size(0)};
-    case mjGEOM_CAPSULE:
-      return Capsule{size(0), 2 * size(1)};
-    case mjGEOM_CYLINDER:
-      return Cylinder{size(0), 2 * size(1)};
-    case mjGEOM_ELLIPSOID:
-      return Ellipsoid{size};
-    case mjGEOM_BOX:
-      return Box{2 * size};
-    default:
-      return std::nullopt;
-  }
-}
-
 }  // namespace
 
 Rasteriser::Rasteriser(const mjModel& model, CellRule rule) : model_(model), rule_(rule) {
@@ -119,7 +101,7 @@ std::vector<Rasteriser::HalfSpace> Rasteriser::FacesOf(const ConvexHull& hull) {
 
 Rasteriser::Solid Rasteriser::MakeSolid(const mjModel& model, int geom) {
   Solid solid;
-  solid.shape = ShapeOf(model, geom);
+  solid.shape = ShapeOfGeom(model, geom);
   const Eigen::Map<const Eigen::Vector3d> size(model.geom_size + 3 * geom);
   const auto set_half_extents = [&](double x, double y, double z) {
     solid.upper_m = {x, y, z};

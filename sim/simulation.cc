@@ -33,8 +33,8 @@ std::vector<std::string> NamesOf(const std::vector<scenarios::MovingObstacle>& o
 // Compiles the world. What is wrong with the robot's own file is told with its lines: those of the
 // whole world are of a text that nobody wrote.
 MujocoModelPtr Compile(const std::string& xml, const scenarios::Scenario& scenario,
-                       const robot::RobotModel& robot, const std::string& models_dir) {
-  const std::string mjcf = robot::MjcfPath(models_dir, scenario.robot);
+                       const robot::RobotModel& robot, const ModelFolders& models) {
+  const std::string mjcf = RobotMjcf(scenario, models);
   MujocoModelPtr model;
   try {
     model = LoadMujocoModel(xml, scenario.file + ": its world");
@@ -49,11 +49,11 @@ MujocoModelPtr Compile(const std::string& xml, const scenarios::Scenario& scenar
 }  // namespace
 
 Simulation::Simulation(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
-                       const std::string& models_dir, const SensorMaker& make_sensor)
-    : model_xml_(BuildWorldXml(scenario, robot.mount_links(), models_dir)),
+                       const ModelFolders& models, const SensorMaker& make_sensor)
+    : model_xml_(BuildWorldXml(scenario, robot.mount_links(), models)),
       joints_(robot.joint_names()),
       obstacles_(NamesOf(scenario.moving_obstacles)),
-      world_(scenario, Compile(model_xml_, scenario, robot, models_dir), joints_,
+      world_(scenario, Compile(model_xml_, scenario, robot, models), joints_,
              StartOf(scenario, robot)),
       truth_(world_),
       robot_(std::make_unique<SimulatedRobot>(
@@ -62,9 +62,9 @@ Simulation::Simulation(const scenarios::Scenario& scenario, const robot::RobotMo
       sensor_name_(scenario.sensor.name),
       sensor_(make_sensor(scenario, world_)) {}
 
-Simulation::Simulation(const scenarios::Scenario& scenario, const std::string& models_dir,
+Simulation::Simulation(const scenarios::Scenario& scenario, const ModelFolders& models,
                        const SensorMaker& make_sensor)
-    : model_xml_(BuildWorldXml(scenario, {}, models_dir)),
+    : model_xml_(BuildWorldXml(scenario, {}, models)),
       obstacles_(NamesOf(scenario.moving_obstacles)),
       world_(scenario, LoadMujocoModel(model_xml_, scenario.file + ": its world"), {},
              Eigen::VectorXd()),

@@ -26,9 +26,9 @@ class Simulation {
   ///   an unknown sensor.
   /// @param make_sensor for who has more sensors than these (sim/sensors.h).
   Simulation(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
-             const std::string& models_dir, const SensorMaker& make_sensor = MakeSensor);
+             const ModelFolders& models, const SensorMaker& make_sensor = MakeSensor);
   /// The world of a scenario without a robot; robot() is then only its clock (sim/no_robot.h).
-  Simulation(const scenarios::Scenario& scenario, const std::string& models_dir,
+  Simulation(const scenarios::Scenario& scenario, const ModelFolders& models,
              const SensorMaker& make_sensor = MakeSensor);
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;

@@ -10,9 +10,10 @@
 #include <set>
 #include <utility>
 
+#include "sidestep/core/convex_polytope.h"
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/joined.h"
 #include "sidestep/core/number_text.h"
-#include "sidestep/robot/model_name.h"
 #include "sidestep/sim/arm_file.h"
 #include "sidestep/sim/foreign_model.h"
 #include "sidestep/sim/mujoco_model.h"
@@ -53,7 +54,16 @@ void SetPose(XMLElement* element, const Pose& X) {
   Set(element, "quat", ToText(Eigen::Vector4d(q.w(), q.x(), q.y(), q.z())));
 }
 
-void SetShape(XMLElement* geom, const Shape& shape) {
+std::string MeshName(const std::string& obstacle) { return "mesh/" + obstacle; }
+
+// The contact geom of an obstacle: `name` is both the geom's and, with "mesh/" before it, that of
+// the mesh of a convex one.
+void SetShape(XMLElement* geom, const Shape& shape, const std::string& name) {
+  if (std::holds_alternative<ConvexMesh>(shape)) {
+    Set(geom, "type", "mesh");
+    Set(geom, "mesh", MeshName(name));
+    return;
+  }
   struct Size {
     std::string operator()(const Box& box) const { return ToText(box.size_m / 2); }
     std::string operator()(const Sphere& sphere) const { return ToText(sphere.radius_m); }
@@ -66,6 +76,7 @@ void SetShape(XMLElement* geom, const Shape& shape) {
     std::string operator()(const Ellipsoid& ellipsoid) const {
       return ToText(ellipsoid.semi_axes_m);
     }
+    std::string operator()(const ConvexMesh&) const { return ""; }
   };
   Set(geom, "type", ShapeName(shape));
   Set(geom, "size", std::visit(Size{}, shape));
@@ -91,7 +102,7 @@ void MergeRobot(const scenarios::Scenario& scenario, const std::string& path, XM
   XMLDocument document;
   const XMLElement& robot = ParseModel(ReadModelFile(path), path, &document);
   CheckArmFile(robot, path);
-  const std::string main_class = robot::ModelFolder(scenario.robot) + ".xml";
+  const std::string main_class = scenario.robot + ".xml";
   const auto section = [&](const char* name) {
     XMLElement* found = world->FirstChildElement(name);
     return found != nullptr ? found : Append(world, name);
@@ -228,9 +239,25 @@ void AddCameras(const scenarios::Scenario& scenario, XMLElement* worldbody) {
 constexpr const char* kPaperMaterial = "world/paper";
 constexpr const char* kInkMaterial = "world/ink";
 
+// MuJoCo moves a mesh's vertices to where its centre of mass is, and its geoms as far back.
+void AddMesh(const std::string& obstacle, const Shape& shape, XMLElement* asset) {
+  const ConvexMesh* const mesh = std::get_if<ConvexMesh>(&shape);
+  if (mesh == nullptr) return;
+  std::string vertices;
+  for (const Eigen::Vector3d& vertex : mesh->hull->vertices()) {
+    vertices += (vertices.empty() ? "" : "  ") + ToText(vertex);
+  }
+  Append(asset, "mesh", {{"name", MeshName(obstacle)}, {"vertex", vertices}});
+}
+
+void AddMeshes(const scenarios::Scenario& scenario, XMLElement* asset) {
+  for (const auto& fixed : scenario.static_obstacles) AddMesh(fixed.name, fixed.shape, asset);
+  for (const auto& moving : scenario.moving_obstacles) AddMesh(moving.name, moving.shape, asset);
+}
+
 void AddTagMaterials(const scenarios::Scenario& scenario, XMLElement* asset) {
   const auto bears = [](const auto& box) { return !box.tags.empty(); };
-  const auto& fixed = scenario.static_boxes;
+  const auto& fixed = scenario.static_obstacles;
   const auto& moving = scenario.moving_obstacles;
   if (std::none_of(fixed.begin(), fixed.end(), bears) &&
       std::none_of(moving.begin(), moving.end(), bears)) {
@@ -284,13 +311,18 @@ void AddTag(const scenarios::Tag& tag, const Eigen::Vector3d& box_size_m, XMLEle
   }
 }
 
-void AddStaticBox(const scenarios::StaticBox& box, XMLElement* worldbody) {
-  XMLElement* body = Append(worldbody, "body", {{"name", box.name}});
-  SetPose(body, box.X_WO);
-  XMLElement* geom = Append(body, "geom", {{"name", box.name}});
-  SetShape(geom, Box{box.size_m});
+void AddTags(const std::vector<scenarios::Tag>& tags, const Shape& shape, XMLElement* body) {
+  const Box* const box = std::get_if<Box>(&shape);
+  for (const scenarios::Tag& tag : tags) AddTag(tag, box->size_m, body);
+}
+
+void AddStaticObstacle(const scenarios::StaticObstacle& obstacle, XMLElement* worldbody) {
+  XMLElement* body = Append(worldbody, "body", {{"name", obstacle.name}});
+  SetPose(body, obstacle.X_WO);
+  XMLElement* geom = Append(body, "geom", {{"name", obstacle.name}});
+  SetShape(geom, obstacle.shape, obstacle.name);
   Set(geom, "material", kBoxMaterial);
-  for (const scenarios::Tag& tag : box.tags) AddTag(tag, box.size_m, body);
+  AddTags(obstacle.tags, obstacle.shape, body);
 }
 
 // X_OA of the appearance in the obstacle's frame: at its foot, looking where it goes.
@@ -319,25 +351,26 @@ void AddPicture(const scenarios::MovingObstacle& obstacle, const std::string& pa
 }
 
 void AddMovingObstacle(const scenarios::Scenario& scenario, std::size_t index,
-                       const std::string& models_dir, XMLElement* worldbody) {
+                       const ModelFolders& models, XMLElement* worldbody) {
   const scenarios::MovingObstacle& obstacle = scenario.moving_obstacles[index];
   XMLElement* body = Append(worldbody, "body", {{"name", obstacle.name}, {"mocap", "true"}});
   SetPose(body, PoseAt(obstacle, EpisodeTime(0)));
   XMLElement* geom = Append(body, "geom", {{"name", obstacle.name}});
-  SetShape(geom, obstacle.shape);
+  SetShape(geom, obstacle.shape, obstacle.name);
   if (obstacle.appearance.empty()) {
     Set(geom, "material", kObstacleMaterial);
-    const Box* const box = std::get_if<Box>(&obstacle.shape);
-    for (const scenarios::Tag& tag : obstacle.tags) AddTag(tag, box->size_m, body);
+    AddTags(obstacle.tags, obstacle.shape, body);
     return;
   }
   Set(geom, "group", "4");
   Set(geom, "rgba", "0.85 0.42 0.12 0.25");
-  const std::string path =
-      models_dir + "/" + obstacle.appearance + "/" + obstacle.appearance + ".xml";
-  if (!std::filesystem::is_regular_file(path)) {
+  const std::string file = obstacle.appearance + "/" + obstacle.appearance + ".xml";
+  const auto folder = models.Find(obstacle.appearance);
+  const std::string path = folder.value_or("") + "/" + obstacle.appearance + ".xml";
+  if (!folder || !std::filesystem::is_regular_file(path)) {
     const std::string key = "moving_obstacles[" + std::to_string(index) + "].appearance";
-    throw scenarios::WrongValue(scenario, key, "there is no " + path);
+    throw scenarios::WrongValue(scenario, key,
+                                "there is no " + file + " in " + Joined(models.folders()));
   }
   AddPicture(obstacle, path, body);
 }
@@ -356,25 +389,22 @@ void CollectNames(const XMLElement* element, std::set<std::string>* names) {
 void RefuseNamesOfTheRobot(const scenarios::Scenario& scenario, const XMLElement* worldbody) {
   std::set<std::string> taken;
   CollectNames(worldbody->FirstChildElement(), &taken);
-  const auto check = [&](const std::string& list, std::size_t i, const std::string& name) {
+  const auto check = [&](const std::string& path, const std::string& name) {
     if (taken.count(name) == 0) return;
     throw scenarios::WrongValue(
-        scenario, list + "[" + std::to_string(i) + "].name",
+        scenario, path + ".name",
         "'" + name + "' is the name of a part of the robot '" + scenario.robot + "'");
   };
-  for (std::size_t i = 0; i < scenario.static_boxes.size(); ++i) {
-    check("static_boxes", i, scenario.static_boxes[i].name);
-  }
+  for (const auto& fixed : scenario.static_obstacles) check(fixed.path, fixed.name);
   for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
-    check("moving_obstacles", i, scenario.moving_obstacles[i].name);
+    check("moving_obstacles[" + std::to_string(i) + "]", scenario.moving_obstacles[i].name);
   }
 }
 
 }  // namespace
 
 std::string BuildWorldXml(const scenarios::Scenario& scenario,
-                          const std::vector<std::string>& mount_links,
-                          const std::string& models_dir) {
+                          const std::vector<std::string>& mount_links, const ModelFolders& models) {
   XMLDocument document;
   XMLElement* world = document.NewElement("mujoco");
   document.InsertEndChild(world);
@@ -382,16 +412,17 @@ std::string BuildWorldXml(const scenarios::Scenario& scenario,
   AddSettings(scenario, world);
   AddAssets(world);
   AddTagMaterials(scenario, world->FirstChildElement("asset"));
+  AddMeshes(scenario, world->FirstChildElement("asset"));
   XMLElement* worldbody = Append(world, "worldbody");
   AddFloorAndLights(scenario, worldbody);
   AddCameras(scenario, worldbody);
   if (!scenario.robot.empty()) {
-    MergeRobot(scenario, robot::MjcfPath(models_dir, scenario.robot), world);
+    MergeRobot(scenario, RobotMjcf(scenario, models), world);
     RefuseNamesOfTheRobot(scenario, worldbody);
   }
-  for (const scenarios::StaticBox& box : scenario.static_boxes) AddStaticBox(box, worldbody);
+  for (const auto& fixed : scenario.static_obstacles) AddStaticObstacle(fixed, worldbody);
   for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
-    AddMovingObstacle(scenario, i, models_dir, worldbody);
+    AddMovingObstacle(scenario, i, models, worldbody);
   }
   if (!mount_links.empty()) {
     // The floor is a geom of the world itself, the only one that is.

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "sidestep/core/model_folders.h"
 #include "sidestep/scenarios/scenario.h"
 
 namespace sidestep::sim {
@@ -16,14 +17,15 @@ inline constexpr const char* kTopCamera = "top";
 /// Builds the whole world as one MJCF text that refers to no other file: it is what is simulated,
 /// stored with a recording and drawn from it.
 ///
-/// - The robot, if the scenario has one: `<models_dir>/<robot>/<robot>.xml`, its bodies in the body
-/// `robot` at X_WB, its
+/// - The robot, if the scenario has one: its MJCF (scenarios::RobotMjcf), its bodies in the body
+///   `robot` at X_WB, its
 ///   defaults in a class of their own, so that they touch nothing else.
-/// - Static boxes: one fixed body each, body and geom named as in the scenario.
+/// - Static obstacles: one fixed body each, body and geom named as in the scenario. Convex meshes
+///   stand as the vertices of their hulls, `mesh/<name>`.
 /// - Moving obstacles: one mocap body each, its contact geom of the same name. Their pose is
 ///   prescribed: they push and are never pushed, so what they touch is exact.
 ///   With an `appearance`, the contact geom is in group 4 (not drawn by default; its colour is
-///   translucent, to be shown as a shell), and what `<models_dir>/<appearance>/<appearance>.xml`
+///   translucent, to be shown as a shell), and what `<appearance>.xml` in the folder of that name
 ///   draws by default stands inside it: geoms of group 2 that touch nothing, origin at the middle
 ///   of the shape's underside, x axis along the first leg of the motion (as far as it is level).
 /// - Tags, where a box has them: a white plate and black squares, geoms of group 2 that touch
@@ -39,7 +41,6 @@ inline constexpr const char* kTopCamera = "top";
 /// @throws InputError for a model file that is missing, is not MJCF, refers to other files, or
 /// cannot be merged.
 std::string BuildWorldXml(const scenarios::Scenario& scenario,
-                          const std::vector<std::string>& mount_links,
-                          const std::string& models_dir);
+                          const std::vector<std::string>& mount_links, const ModelFolders& models);
 
 }  // namespace sidestep::sim

@@ -34,9 +34,9 @@ struct Scene {
     for (int k = 0; k < boxes.spec.size[2]; ++k) {
       for (int j = 0; j < boxes.spec.size[1]; ++j) {
         for (int i = 0; i < boxes.spec.size[0]; ++i) {
-          for (const scenarios::StaticBox& box : scenario.static_boxes) {
+          for (const scenarios::StaticObstacle& box : scenario.static_obstacles) {
             const Eigen::Vector3d p_OQ = box.X_WO.Inverse() * boxes.spec.Center(i, j, k);
-            if (SignedDistance(Box{box.size_m}, p_OQ) < 0) {
+            if (SignedDistance(box.shape, p_OQ) < 0) {
               boxes.cells[boxes.spec.Index(i, j, k)] = 1;
             }
           }

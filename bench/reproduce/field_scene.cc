@@ -16,8 +16,9 @@ scenarios::Scenario LoadBoxScene(const std::string& path, const scenarios::Setti
   const auto fail = [&](const std::string& name) {
     throw InputError(path, "'" + name + "' is not a box along the axes, as published ones are");
   };
-  for (const scenarios::StaticBox& box : scene.static_boxes) {
-    if (!IsAlongTheAxes(box.X_WO)) fail(box.name);
+  for (const scenarios::StaticObstacle& fixed : scene.static_obstacles) {
+    const bool is_box = std::holds_alternative<Box>(fixed.shape);
+    if (!is_box || !IsAlongTheAxes(fixed.X_WO)) fail(fixed.name);
   }
   for (const scenarios::MovingObstacle& obstacle : scene.moving_obstacles) {
     const bool turns = obstacle.faces_path || !obstacle.rpy_rad.isZero(0) ||
@@ -43,8 +44,9 @@ GridSpec PublishedTimingGrid(int voxels_per_side) {
 OccupancyGrid StaticOccupancy(const scenarios::Scenario& scene, const GridSpec& grid,
                               BoxAlignment alignment) {
   OccupancyGrid occupancy(grid);
-  for (const scenarios::StaticBox& box : scene.static_boxes) {
-    Fill(occupancy, PublishedBoxCells(grid, box.X_WO.translation(), box.size_m, alignment));
+  for (const scenarios::StaticObstacle& fixed : scene.static_obstacles) {
+    Fill(occupancy, PublishedBoxCells(grid, fixed.X_WO.translation(),
+                                      std::get<Box>(fixed.shape).size_m, alignment));
   }
   return occupancy;
 }

@@ -19,8 +19,8 @@ OpenLoopExperiment WamSinglePillar(const std::string& scenarios_dir) {
     e.scene = LoadBoxScene(path, {{"pair", pair}});
     e.pairs.emplace_back(e.scene.start_name, e.scene.goal_name);
   }
-  std::erase_if(e.scene.static_boxes,
-                [](const scenarios::StaticBox& box) { return box.name == "stand"; });
+  std::erase_if(e.scene.static_obstacles,
+                [](const scenarios::StaticObstacle& box) { return box.name == "stand"; });
   e.direction = {-0.2726, 0.9621, 0};
   // Written out, not summed up: 1.0 + 7 * 0.1 is not 1.7, and last bits decide which cell the box
   // falls into.

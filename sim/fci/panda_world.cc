@@ -14,11 +14,11 @@ scenarios::Scenario PandaAlone() {
 }
 
 std::unique_ptr<World> MakePandaWorld(const scenarios::Scenario& scenario,
-                                      const robot::RobotModel& robot, const std::string& models_dir,
+                                      const robot::RobotModel& robot, const ModelFolders& models,
                                       const Eigen::VectorXd& q_start) {
-  MujocoModelPtr model = LoadMujocoModel(BuildWorldXml(scenario, robot.mount_links(), models_dir),
+  MujocoModelPtr model = LoadMujocoModel(BuildWorldXml(scenario, robot.mount_links(), models),
                                          scenario.file + ": its world");
-  CheckAgreement(robot, *model, models_dir + "/" + scenario.robot + "/" + scenario.robot + ".xml");
+  CheckAgreement(robot, *model, RobotMjcf(scenario, models));
   return std::make_unique<World>(scenario, std::move(model), robot.joint_names(), q_start);
 }
 

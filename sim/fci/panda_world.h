@@ -16,7 +16,7 @@ scenarios::Scenario PandaAlone();
 /// The world of a scenario with its arm at q_start. @param robot the scenario's, at its X_WB.
 /// @throws InputError as Simulation does.
 std::unique_ptr<World> MakePandaWorld(const scenarios::Scenario& scenario,
-                                      const robot::RobotModel& robot, const std::string& models_dir,
+                                      const robot::RobotModel& robot, const ModelFolders& models,
                                       const Eigen::VectorXd& q_start);
 
 }  // namespace sidestep::sim::fci

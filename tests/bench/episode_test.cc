@@ -261,7 +261,8 @@ TEST_F(Episode, UnderTheProfileLabPlansForWhereThingsCanStrayWhileTheRobotStops)
 
 TEST_F(Episode, ToAGoalOnWhichSomethingStandsSaysThatEveryPlanCollides) {
   scenario_.moving_obstacles.clear();
-  scenario_.static_boxes = {{"on the goal", Pose::Translation({0.6, 0.6, 0}), {0.3, 0.3, 0.2}}};
+  scenario_.static_obstacles = {
+      {"on the goal", Pose::Translation({0.6, 0.6, 0}), Box{{0.3, 0.3, 0.2}}}};
   const EpisodeResult result = Run();
   EXPECT_EQ(result.outcome, Outcome::kPlannerFailed);
   EXPECT_EQ(result.reason, "none of " + std::to_string(result.recording.cycles.size()) +

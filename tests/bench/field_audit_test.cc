@@ -23,7 +23,7 @@ constexpr double kClamp_m = 0.3, kCell_m = 0.04;
 scenarios::Scenario MakeScenario() {
   scenarios::Scenario scenario;
   scenario.grid = {Eigen::Vector3d::Constant(-0.8), kCell_m, {41, 41, 41}};
-  scenario.static_boxes = {{"cube", Pose(), Eigen::Vector3d::Constant(0.4)}};
+  scenario.static_obstacles = {{"cube", Pose(), Box{Eigen::Vector3d::Constant(0.4)}}};
   scenario.floor_m = -9;
   scenario.seed = 5;
   return scenario;
@@ -190,7 +190,7 @@ TEST(FieldAudit, HoldsTheFloorForTrue) {
 
 TEST(FieldAudit, OfAWorldWithoutAnythingHasNoErrorAndNoInfinity) {
   scenarios::Scenario scenario = MakeScenario();
-  scenario.static_boxes.clear();
+  scenario.static_obstacles.clear();
   class Nothing final : public robot::WorldTruth {
    public:
     std::vector<ObjectObservation> ObstaclesAt(EpisodeTime) const override { return {}; }

@@ -96,8 +96,8 @@ TEST(OpenLoop, UnderPredictionPassesTheHsrWithLessEffortThanUnderUpdates) {
 class TrueClearanceTest : public ::testing::Test {
  protected:
   TrueClearanceTest() {
-    experiment_.scene.static_boxes = {
-        {"block", Pose::Translation({0, 0, -1}), Eigen::Vector3d::Constant(0.2)}};
+    experiment_.scene.static_obstacles = {
+        {"block", Pose::Translation({0, 0, -1}), Box{Eigen::Vector3d::Constant(0.2)}}};
     scenarios::MovingObstacle& pillar = experiment_.scene.moving_obstacles.front();
     pillar.shape = Box{Eigen::Vector3d::Constant(0.2)};
     std::get<scenarios::LinearMotion>(pillar.motion).start_m = {0, -3, 0};

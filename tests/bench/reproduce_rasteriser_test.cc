@@ -29,8 +29,9 @@ CellRange Cells(int x0, int x1, int y0, int y1, int z0, int z1) {
 }
 
 CellRange StaticCells(const OpenLoopExperiment& experiment, std::size_t b, BoxAlignment alignment) {
-  const scenarios::StaticBox& box = experiment.scene.static_boxes.at(b);
-  return PublishedBoxCells(experiment.scene.grid, box.X_WO.translation(), box.size_m, alignment);
+  const scenarios::StaticObstacle& box = experiment.scene.static_obstacles.at(b);
+  return PublishedBoxCells(experiment.scene.grid, box.X_WO.translation(),
+                           std::get<Box>(box.shape).size_m, alignment);
 }
 
 TEST(PublishedRasteriser, SetsTheStaticBoxesOfTheWamExperimentOneCellLow) {
@@ -41,7 +42,7 @@ TEST(PublishedRasteriser, SetsTheStaticBoxesOfTheWamExperimentOneCellLow) {
       Cells(42, 56, 10, 34, 34, 34), Cells(42, 56, 10, 34, 22, 22), Cells(42, 56, 10, 34, 9, 9),
   };
   const OpenLoopExperiment wam = MakeOpenLoopExperiment("wam_single_pillar", kScenarios);
-  ASSERT_EQ(wam.scene.static_boxes.size(), published.size());
+  ASSERT_EQ(wam.scene.static_obstacles.size(), published.size());
   for (std::size_t b = 0; b < published.size(); ++b) {
     EXPECT_EQ(StaticCells(wam, b, BoxAlignment::kOneCellLow), published[b]) << "box " << b + 1;
   }

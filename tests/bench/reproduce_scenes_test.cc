@@ -50,10 +50,11 @@ const std::vector<PublishedBox> kTwoTables = {{{-0.31, 0, 0.2}, {0.80, 1.2, 0.4}
                                               {{1.05, 0, 0.2}, {0.80, 1.2, 0.4}}};
 
 void ExpectStands(const scenarios::Scenario& scene, const std::vector<PublishedBox>& boxes) {
-  ASSERT_EQ(scene.static_boxes.size(), boxes.size());
+  ASSERT_EQ(scene.static_obstacles.size(), boxes.size());
   for (std::size_t b = 0; b < boxes.size(); ++b) {
-    EXPECT_EQ(scene.static_boxes[b].X_WO.translation(), boxes[b].center_m) << "box " << b + 1;
-    EXPECT_EQ(scene.static_boxes[b].size_m, boxes[b].size_m) << "box " << b + 1;
+    EXPECT_EQ(scene.static_obstacles[b].X_WO.translation(), boxes[b].center_m) << "box " << b + 1;
+    EXPECT_EQ(std::get<Box>(scene.static_obstacles[b].shape).size_m, boxes[b].size_m)
+        << "box " << b + 1;
   }
 }
 

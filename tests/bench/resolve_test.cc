@@ -91,7 +91,7 @@ scenarios::Scenario OnTheFloor() {
   scenarios::Scenario scenario = Walkway();
   scenario.X_WB = Pose();
   scenario.mount = "";
-  scenario.static_boxes.clear();
+  scenario.static_obstacles.clear();
   scenario.moving_obstacles.clear();
   scenario.start_name = "ready";
   return scenario;
@@ -102,7 +102,7 @@ TEST(ResolveTask, LetsTheRobotStandOnTheFloorWithoutAMount) {
   scenario.goal_name = "ready";
   EXPECT_EQ(Complaint(scenario), "was accepted");
   // The mount is what it stands on, if there is one: then its foot may not be in the floor.
-  scenario.static_boxes = {{"plate", Pose::Translation({0, 0, -0.5}), {1, 1, 1}}};
+  scenario.static_obstacles = {{"plate", Pose::Translation({0, 0, -0.5}), Box{{1, 1, 1}}}};
   scenario.mount = "plate";
   EXPECT_THAT(Complaint(scenario), ::testing::EndsWith("inside 'floor'"));
 }

@@ -3,10 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <ostream>
 #include <string>
+#include <vector>
 
+#include "sidestep/core/convex_polytope.h"
 #include "sidestep/core/random.h"
+#include "tests/support/random_points.h"
 
 namespace sidestep {
 namespace {
@@ -16,6 +20,13 @@ struct Case {
   Shape shape;
 };
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+
+Shape RandomMesh() {
+  RandomStream random(1, "corners");
+  std::vector<Eigen::Vector3d> points;
+  for (int n = 0; n < 30; ++n) points.push_back(UniformPoint(random, 0.4));
+  return ConvexMesh{std::make_shared<const ConvexPolytope>(points)};
+}
 
 class EveryShape : public ::testing::TestWithParam<Case> {};
 
@@ -55,7 +66,8 @@ INSTANTIATE_TEST_SUITE_P(ShapeGradient, EveryShape,
                                            Case{"Sphere", Sphere{0.3}},
                                            Case{"Capsule", Capsule{0.1, 0.6}},
                                            Case{"Cylinder", Cylinder{0.2, 0.5}},
-                                           Case{"Ellipsoid", Ellipsoid{{0.1, 0.2, 0.4}}}),
+                                           Case{"Ellipsoid", Ellipsoid{{0.1, 0.2, 0.4}}},
+                                           Case{"ConvexMesh", RandomMesh()}),
                          [](const auto& test) { return test.param.name; });
 
 }  // namespace

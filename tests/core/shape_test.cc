@@ -269,6 +269,7 @@ TEST(Shape, HasTheNameThatScenariosUse) {
   EXPECT_EQ(ShapeName(Capsule{1, 1}), "capsule");
   EXPECT_EQ(ShapeName(Cylinder{1, 1}), "cylinder");
   EXPECT_EQ(ShapeName(Ellipsoid{{1, 1, 1}}), "ellipsoid");
+  EXPECT_EQ(ShapeName(ConvexMesh{}), "convex_mesh");
 }
 
 }  // namespace

@@ -142,7 +142,7 @@ TEST(SensorDelivery, WithoutImperfectionsIsPromptAndComplete) {
 
 TEST(OccupancyNoise, FlipsCellsAsOftenAsItSays) {
   scenarios::Scenario scenario = SwingingScenario();
-  scenario.static_boxes = {{"shelf", Pose::Translation({0, 0.7, 0.4}), {0.4, 0.2, 0.3}}};
+  scenario.static_obstacles = {{"shelf", Pose::Translation({0, 0.7, 0.4}), Box{{0.4, 0.2, 0.3}}}};
   const std::vector<std::uint8_t> truth = GridsOf(Record(scenario), scenario.grid).front();
   scenario.sensor.noise = scenarios::OccupancyNoise{.false_filled = 0.002, .false_free = 0.1};
   const auto grids = GridsOf(Record(scenario), scenario.grid);
@@ -163,7 +163,8 @@ TEST(OccupancyNoise, DisplacesPointsByItsDeviationAlongEachAxis) {
   scenarios::Scenario scenario = SwingingScenario();
   scenario.sensor.rate_hz = 200;
   const Eigen::Vector3d p_WCell = scenario.grid.Center(20, 40, 30);
-  scenario.static_boxes = {{"grain", Pose::Translation(p_WCell), Eigen::Vector3d::Constant(0.02)}};
+  scenario.static_obstacles = {
+      {"grain", Pose::Translation(p_WCell), Box{Eigen::Vector3d::Constant(0.02)}}};
   constexpr double kDeviation = 0.03;
   scenario.sensor.noise = scenarios::OccupancyNoise{.position_noise_m = kDeviation};
   std::map<int, int> counts[3];
@@ -187,8 +188,8 @@ TEST(DepthCamera, HasTheNoiseThatItSaysAtItsDepth) {
   scenario.sensor.rate_hz = 200;
   // One ray along x through the middles of cells, onto a wall in the middle of cell 40.
   const Eigen::Vector3d p_WWall = scenario.grid.Center(40, 45, 35);
-  scenario.static_boxes = {
-      {"wall", Pose::Translation(p_WWall + Eigen::Vector3d(0.1, 0, 0)), {0.2, 0.3, 0.3}}};
+  scenario.static_obstacles = {
+      {"wall", Pose::Translation(p_WWall + Eigen::Vector3d(0.1, 0, 0)), Box{{0.2, 0.3, 0.3}}}};
   scenarios::CameraSettings camera;
   camera.position_m = p_WWall - Eigen::Vector3d(2, 0, 0);
   camera.look_at_m = p_WWall;
@@ -273,7 +274,8 @@ TEST(TagCamera, HasTheErrorsThatItsCovarianceSays) {
 
 TEST(TagCamera, DoesNotFindWhatIsFarAwayOrBehindSomething) {
   scenarios::Scenario scenario = SwingingScenario();
-  scenario.static_boxes = {{"screen", Pose::Translation({1.2, 0.4, 0.6}), {0.02, 0.4, 0.6}}};
+  scenario.static_obstacles = {
+      {"screen", Pose::Translation({1.2, 0.4, 0.6}), Box{{0.02, 0.4, 0.6}}}};
   scenario.moving_obstacles = {
       sim::Passing("cart", Sphere{0.1}, {0.8, -0.9, 0.6}, {0, 1, 0}, 0.15)};
   scenario.sensor.name = "tags";
@@ -299,7 +301,7 @@ class EverySensor : public ::testing::TestWithParam<std::string> {
   static scenarios::Scenario Scene() {
     scenarios::Scenario scenario = SwingingScenario();
     scenario.horizon_s = 2;
-    scenario.static_boxes = {{"shelf", Pose::Translation({0, 0.7, 0.4}), {0.4, 0.2, 0.3}}};
+    scenario.static_obstacles = {{"shelf", Pose::Translation({0, 0.7, 0.4}), Box{{0.4, 0.2, 0.3}}}};
     scenario.moving_obstacles = {
         sim::Passing("cart", Box{{0.3, 0.2, 0.2}}, {0.8, -0.9, 0.6}, {0, 1, 0}, 0.4)};
     scenario.sensor.name = GetParam();

@@ -708,8 +708,8 @@ TEST(FciServer, GivesTheSameBitsEachTime) {
 TEST(FciServer, FeelsWhatItRunsInto) {
   scenarios::Scenario scenario = sim::fci::PandaAlone();
   // Beside the hand (0.307, 0, 0.487), in the way of joint 1.
-  scenario.static_boxes.push_back(
-      {"post", Pose(Eigen::Quaterniond::Identity(), {0.3, 0.25, 0.5}), {0.2, 0.1, 1.0}});
+  scenario.static_obstacles.push_back(
+      {"post", Pose(Eigen::Quaterniond::Identity(), {0.3, 0.25, 0.5}), Box{{0.2, 0.1, 1.0}}});
   const ServedPanda panda("", {}, scenario);
   RawFciDriver driver(panda.address());
   int time_ms = 0;

@@ -101,7 +101,8 @@ class SelfContact : public ::testing::TestWithParam<std::string> {};
 // contacts with the fixed base, which has no spheres.
 TEST_P(SelfContact, IsSeenWithinTheMarginOfThePlanner) {
   const robot::RobotModel robot = robot::RobotModel::Load(kModels, GetParam(), Pose());
-  const std::string path = robot::MjcfPath(kModels, GetParam());
+  const std::string name = robot::ModelFolder(GetParam());
+  const std::string path = kModels + ("/" + name + "/" + name + ".xml");
   char error[1000] = "";
   const std::unique_ptr<mjModel, void (*)(mjModel*)> model(
       mj_loadXML(path.c_str(), nullptr, error, sizeof error), mj_deleteModel);
@@ -155,7 +156,7 @@ std::vector<std::string> RobotsAndVariants() {
   std::vector<std::string> names;
   for (const std::string& name : robot::RobotModel::ListNames(kModels)) {
     names.push_back(name);
-    for (const std::string& variant : robot::VariantNames(kModels, name)) names.push_back(variant);
+    for (const std::string& variant : robot::VariantNames(kModels + ("/" + name))) names.push_back(variant);
   }
   return names;
 }

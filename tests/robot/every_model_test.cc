@@ -37,7 +37,7 @@ std::vector<std::string> Files() {
                                     SIDESTEP_SOURCE_DIR "/tests/sim/models/clamp/robot.yaml"};
   for (const std::string& name : RobotModel::ListNames(models)) {
     files.push_back(models + "/" + name + "/robot.yaml");
-    for (const std::string& variant : VariantNames(models, name)) {
+    for (const std::string& variant : VariantNames(models + "/" + name)) {
       files.push_back(models + "/" + name + "/" + ModelVariant(variant) + ".yaml");
     }
   }

@@ -103,14 +103,14 @@ TEST_F(Variant, ThatIsNotThereIsToldWithThoseThatAre) {
   Write("round.yaml", "extends: robot.yaml\n");
   Write("whole.yaml", "name: panda\n");
   Write("broken.yaml", "extends: [\n");
-  EXPECT_EQ(VariantNames(temporary_.path().string(), "panda"),
+  EXPECT_EQ(VariantNames(temporary_.path().string() + "/panda"),
             std::vector<std::string>{"panda:round"});
   try {
     Load("gone");
     FAIL() << "was found";
   } catch (const InputError& error) {
     EXPECT_EQ(error.what(),
-              temporary_.path().string() + ": holds no variant 'panda:gone' (known: panda:round)");
+              temporary_.path().string() + "/panda: holds no variant 'panda:gone' (known: panda:round)");
   }
 }
 
@@ -119,7 +119,8 @@ TEST(ModelName, IsAFolderAndMaybeAVariant) {
   EXPECT_EQ(ModelVariant("panda"), "");
   EXPECT_EQ(ModelFolder("panda:covered"), "panda");
   EXPECT_EQ(ModelVariant("panda:covered"), "covered");
-  EXPECT_EQ(MjcfPath("models", "panda:covered"), "models/panda/panda.xml");
+  EXPECT_EQ(DescriptionFile(""), "robot.yaml");
+  EXPECT_EQ(DescriptionFile("covered"), "covered.yaml");
 }
 
 }  // namespace

@@ -3,11 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "sidestep/core/convex_polytope.h"
 #include "sidestep/core/input_error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sidestep::scenarios {
 namespace {
@@ -71,6 +74,11 @@ floor_m: -0.6
 static_world: exact
 static_boxes:
   - {name: slanted, center_m: [1, 2, 3], rpy_rad: [0, 0.4, 0], size_m: [0.1, 0.2, 0.3]}
+static_obstacles:
+  - {name: crate, shape: {box: {size_m: [0.1, 0.2, 0.3]}}, position_m: [1, 2, 3], rpy_rad: [1, 0.4, 0]}
+  - name: wedge
+    position_m: [2, 3, 1]
+    shape: {convex_mesh: {vertices_m: [[0, 0, 0], [0.3, 0, 0], [0.1, 0, 0], [0, 0.2, 0], [0, 0, 0.7]]}}
 moving_obstacles:
   - {name: a, shape: {capsule: {radius_m: 0.1, length_m: 0.5}}, rpy_rad: [0, 1.5, 0],
      motion: {linear: {start_m: [0, 0, 0], direction: [3, 4, 0], speed_m_s: 0.7, stop_at_s: 2}}}
@@ -78,6 +86,8 @@ moving_obstacles:
      motion: {waypoints: {points: [{position_m: [0, 0, 0]}, {position_m: [1, 0, 0]}],
                           speed_m_s: 0.1}}}
   - {name: c, shape: {ellipsoid: {semi_axes_m: [0.1, 0.2, 0.3]}},
+     motion: {linear: {start_m: [0, 0, 0], direction: [0, 0, 1], speed_m_s: 0}}}
+  - {name: d, shape: {convex_mesh: {vertices_m: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]}},
      motion: {linear: {start_m: [0, 0, 0], direction: [0, 0, 1], speed_m_s: 0}}}
 planner: {name: gpmp, epsilon_m: 0.1, sigma_obs: 0.2, n_int: 19, qc: 2, velocity_scale: 0.75,
           acceleration_scale: 0.25, max_iterations: 7, growth_sigmas: 1.5, growth_limit_m: 0.07,
@@ -124,6 +134,15 @@ seed: 42
   EXPECT_EQ(again.sensor.camera->height, 24);
   EXPECT_EQ(again.sensor.camera->unseen, "filled");
   EXPECT_EQ(again.sensor.tags->rotation_noise_rad, 0.007);
+  ASSERT_EQ(again.static_obstacles.size(), 3u);
+  EXPECT_EQ(again.static_obstacles[0].path, "static_boxes[0]");
+  EXPECT_EQ(again.static_obstacles[1].path, "static_obstacles[0]");
+  EXPECT_EQ(std::get<Box>(again.static_obstacles[1].shape).size_m, Eigen::Vector3d(0.1, 0.2, 0.3));
+  EXPECT_EQ(again.static_obstacles[2].X_WO.translation(), Eigen::Vector3d(2, 3, 1));
+  // The corners alone, as they were given.
+  const std::vector<Eigen::Vector3d> corners = {{0, 0, 0}, {0.3, 0, 0}, {0, 0.2, 0}, {0, 0, 0.7}};
+  EXPECT_EQ(std::get<ConvexMesh>(again.static_obstacles[2].shape).hull->vertices(), corners);
+  EXPECT_EQ(std::get<ConvexMesh>(again.moving_obstacles[3].shape).hull->vertices().size(), 4u);
   EXPECT_EQ(std::get<LinearMotion>(again.moving_obstacles[0].motion).stop_at_s, 2);
   EXPECT_EQ(std::get<Cylinder>(again.moving_obstacles[1].shape).length_m, 0.5);
   EXPECT_EQ(std::get<Ellipsoid>(again.moving_obstacles[2].shape).semi_axes_m,
@@ -147,9 +166,9 @@ TEST(Scenario, WithoutANameIsNamedAfterItsFile) {
 TEST(HsrWalkway, HasThePublishedGeometryWhereItWasMeantToBe) {
   const Scenario scenario = LoadScenario(kFolder + "/hsr_walkway.yaml");
   EXPECT_EQ(scenario.X_WB.translation(), Eigen::Vector3d(0, 0, 0.4));
-  ASSERT_EQ(scenario.static_boxes.size(), 2u);
-  EXPECT_EQ(scenario.static_boxes[0].X_WO.translation(), Eigen::Vector3d(-0.31, 0, 0.2));
-  EXPECT_EQ(scenario.static_boxes[1].X_WO.translation(), Eigen::Vector3d(1.05, 0, 0.2));
+  ASSERT_EQ(scenario.static_obstacles.size(), 2u);
+  EXPECT_EQ(scenario.static_obstacles[0].X_WO.translation(), Eigen::Vector3d(-0.31, 0, 0.2));
+  EXPECT_EQ(scenario.static_obstacles[1].X_WO.translation(), Eigen::Vector3d(1.05, 0, 0.2));
   ASSERT_EQ(scenario.moving_obstacles.size(), 1u);
   const MovingObstacle& hsr = scenario.moving_obstacles[0];
   EXPECT_EQ(std::get<Box>(hsr.shape).size_m, Eigen::Vector3d(0.48, 0.55, 1.2));
@@ -281,6 +300,39 @@ TEST(Settings, AreBlamedForWhatTheyMakeWrongElsewhere) {
             "--set replanning.latency_s: must not exceed the horizon");
   EXPECT_EQ(Complaint({{"workspace.cell_m", "0.001"}, {"planner.epsilon_m", "0.3"}}),
             "--set planner.epsilon_m: must be at most 256 cells of the workspace");
+}
+
+TEST(RobotFolder, IsThatOfTheNameWhereverRobotsAreLookedFor) {
+  const TemporaryFolder folder;
+  const std::string first = (folder.path() / "first").string();
+  const std::string second = (folder.path() / "second").string();
+  std::filesystem::create_directories(first + "/wam");
+  std::filesystem::create_directories(second + "/wam");
+  std::filesystem::create_directories(second + "/panda");
+  const ModelFolders models(std::vector<std::string>{first, second});
+  Scenario scenario;
+  scenario.file = "scene.yaml";
+  scenario.robot = "wam";
+  EXPECT_EQ(RobotFolder(scenario, models), first + "/wam");
+  scenario.robot = "panda";
+  EXPECT_EQ(RobotMjcf(scenario, models), second + "/panda/panda.xml");
+  scenario.robot = "hsr";
+  EXPECT_THAT([&] { RobotFolder(scenario, models); },
+              ::testing::ThrowsMessage<InputError>(
+                  "scene.yaml:1: robot.model: there is no 'hsr' in " + first + ", " + second));
+}
+
+TEST(RobotFolder, MayBeAPathFromTheScenariosOwnFolder) {
+  const auto read = [](const std::string& model) { return WithSettings({{"robot.model", model}}); };
+  const Scenario beside = read("./robots/arm/");
+  EXPECT_EQ(beside.robot, "arm");
+  EXPECT_EQ(RobotFolder(beside, "models"), "robots/arm");
+  Scenario above = read("../arm");
+  above.file = "a/b/scene.yaml";
+  EXPECT_EQ(RobotFolder(above, "models"), "a/arm");
+  const Scenario elsewhere = read("/robots/arm");
+  EXPECT_EQ(RobotFolder(elsewhere, "models"), "/robots/arm");
+  EXPECT_EQ(ParseScenario(ToYaml(above), "again.yaml").robot_path, "../arm");
 }
 
 TEST(WrongValue, IsToldAtTheNearestLineThatThereIs) {

@@ -34,8 +34,8 @@ class Watched {
     scenario_ =
         scenarios::LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/walkway_behaviours.yaml", settings);
     std::vector<SceneBox> boxes;
-    for (const scenarios::StaticBox& box : scenario_.static_boxes) {
-      boxes.push_back(StillBox(box.size_m, box.X_WO.translation()));
+    for (const scenarios::StaticObstacle& box : scenario_.static_obstacles) {
+      boxes.push_back(StillBox(std::get<Box>(box.shape).size_m, box.X_WO.translation()));
     }
     for (const scenarios::MovingObstacle& obstacle : scenario_.moving_obstacles) {
       boxes.push_back(AsBox(obstacle));

@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <ostream>
 #include <string>
+#include <vector>
 
+#include "sidestep/core/convex_polytope.h"
 #include "sidestep/sim/convex_distance.h"
 #include "tests/sim/small_model.h"
 #include "tests/support/random_points.h"
@@ -32,6 +35,16 @@ double CubeDistance(const Case& c, const Pose& X_WO, const Vector3d& p_WCenter, 
   X_CO.linear() = X_WO.rotation().toRotationMatrix();
   X_CO.translation() = X_WO.translation() - p_WCenter;
   return ConvexDistance(cube, c.solid, X_CO);
+}
+
+// Of a shard and of a needle.
+Case MeshCase(const std::string& name, const Vector3d& size_m) {
+  RandomStream random(4, name);
+  std::vector<Vector3d> points;
+  for (int n = 0; n < 25; ++n) points.push_back(size_m.cwiseProduct(UniformPoint(random, 1)));
+  return {name,
+          ConvexMesh{std::make_shared<const ConvexPolytope>(points)},
+          {Core::kHull, {0, 0, 0}, points, 0}};
 }
 
 class TouchedCubes : public testing::TestWithParam<Case> {};
@@ -81,7 +94,9 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"Pole", Cylinder{0.015, 0.6}, {Core::kCylinder, {0.015, 0, 0.3}, {}, 0}},
         Case{"Disc", Cylinder{0.2, 0.01}, {Core::kCylinder, {0.2, 0, 0.005}, {}, 0}},
         Case{"Ellipsoid", Ellipsoid{{0.1, 0.2, 0.05}}, {Core::kEllipsoid, {0.1, 0.2, 0.05}, {}, 0}},
-        Case{"Lens", Ellipsoid{{0.2, 0.2, 0.006}}, {Core::kEllipsoid, {0.2, 0.2, 0.006}, {}, 0}}),
+        Case{"Lens", Ellipsoid{{0.2, 0.2, 0.006}}, {Core::kEllipsoid, {0.2, 0.2, 0.006}, {}, 0}},
+        MeshCase("Mesh", {0.2, 0.15, 0.1}), MeshCase("Shard", {0.2, 0.2, 0.004}),
+        MeshCase("Needle", {0.004, 0.004, 0.3})),
     [](const auto& test) { return test.param.name; });
 
 TEST(CubeTouch, DoesNotCountCubesThatOnlyShareAFace) {

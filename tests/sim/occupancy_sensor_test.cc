@@ -12,8 +12,8 @@ namespace {
 
 scenarios::Scenario BusyScenario() {
   scenarios::Scenario scenario = TwoLinkScenario();
-  scenario.static_boxes = {{"shelf", Pose::Translation({0, 0.7, 0.4}), {0.4, 0.2, 0.3}},
-                           {"pole", Pose::Translation({-0.5, -0.5, 0.5}), {0.1, 0.1, 1}}};
+  scenario.static_obstacles = {{"shelf", Pose::Translation({0, 0.7, 0.4}), Box{{0.4, 0.2, 0.3}}},
+                               {"pole", Pose::Translation({-0.5, -0.5, 0.5}), Box{{0.1, 0.1, 1}}}};
   scenario.moving_obstacles = {
       Passing("cart", Box{{0.48, 0.55, 0.4}}, {0.3, 0.9, 0.6}, {0, -1, 0}, 1.4),
       Passing("bead", Sphere{0.15}, {-0.9, 0.7, 0.3}, {1, 0, 0}, 0.5)};  // into the shelf

@@ -96,7 +96,7 @@ TEST_P(BadModel, IsRefusedAsItsFirstLineExpects) {
   EXPECT_EQ(robot.Message(scenario), expected);
   // Wherever it stands, and whatever it stands on.
   scenario.X_WB = Pose::FromRollPitchYaw({0.3, -0.2, 1}, {0.4, -2, 0.6});
-  scenario.static_boxes = {{"table", Pose::Translation({3, 0, 0.2}), {0.8, 1.2, 0.4}}};
+  scenario.static_obstacles = {{"table", Pose::Translation({3, 0, 0.2}), Box{{0.8, 1.2, 0.4}}}};
   scenario.mount = "table";
   EXPECT_EQ(robot.Message(scenario), expected);
 }

@@ -192,7 +192,7 @@ TEST(SimulatedTruth, JudgesTheFixedBaseAgainstWhatMoves) {
 TEST(SimulatedTruth, IgnoresTheMountForTheLinksThatStandOnIt) {
   scenarios::Scenario scenario = TwoLinkScenario();
   // The block reaches up into the turret (0.25 to 0.35 m), but not to the bar.
-  scenario.static_boxes = {{"block", Pose::Translation({0, 0, 0.13}), {0.14, 0.14, 0.26}}};
+  scenario.static_obstacles = {{"block", Pose::Translation({0, 0, 0.13}), Box{{0.14, 0.14, 0.26}}}};
   scenario.mount = "block";
   const std::vector<TruthSample> mounted = Watch(scenario, 0.1);
   EXPECT_EQ(FirstContact(mounted), nullptr);
@@ -216,7 +216,7 @@ TEST(SimulatedTruth, LetsTheLinksAtTheFootTouchTheFloorWithoutAMount) {
   EXPECT_NE(standing.front().nearest_robot_part, "turret");
   EXPECT_GT(standing.front().clearance_m, 0);
 
-  scenario.static_boxes = {{"block", Pose::Translation({5, 0, 0}), {0.1, 0.1, 0.1}}};
+  scenario.static_obstacles = {{"block", Pose::Translation({5, 0, 0}), Box{{0.1, 0.1, 0.1}}}};
   scenario.mount = "block";  // now it is not the floor that it stands on
   const std::vector<TruthSample> stuck = Watch(scenario, 0.1);
   ASSERT_NE(FirstContact(stuck), nullptr);

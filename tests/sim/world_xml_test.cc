@@ -3,14 +3,21 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
 
+#include "sidestep/core/convex_polytope.h"
 #include "sidestep/core/input_error.h"
+#include "sidestep/sim/foreign_model.h"
 #include "sidestep/sim/mujoco_pose.h"
 #include "sidestep/sim/world_geoms.h"
 #include "tests/sim/small_model.h"
 #include "tests/sim/two_link.h"
+#include "tests/support/random_points.h"
 #include "tests/support/temporary_folder.h"
 
 namespace sidestep::sim {
@@ -46,9 +53,9 @@ void ExpectSamePose(const Pose& a, const Pose& b) {
 scenarios::Scenario FullScenario() {
   scenarios::Scenario scenario = TwoLinkScenario();
   scenario.X_WB = Pose::FromRollPitchYaw({0.1, -0.2, 0.3}, {0.4, 0.5, 0.6});
-  scenario.static_boxes = {
-      {"table", Pose::FromRollPitchYaw({0, 0, 0.5}, {1, 2, 0.2}), {0.8, 1.2, 0.4}},
-      {"wall", Pose::Translation({0, -2, 1}), {3, 0.1, 2}}};
+  scenario.static_obstacles = {
+      {"table", Pose::FromRollPitchYaw({0, 0, 0.5}, {1, 2, 0.2}), Box{{0.8, 1.2, 0.4}}},
+      {"wall", Pose::Translation({0, -2, 1}), Box{{3, 0.1, 2}}}};
   scenario.mount = "table";
   scenario.floor_m = -0.3;
   scenario.moving_obstacles = {
@@ -67,12 +74,12 @@ TEST(WorldXml, PutsEverythingWhereTheScenarioHasIt) {
   const Built world(scenario);
   ExpectSamePose(world.BodyPose(kRobotBody), scenario.X_WB);
   ExpectSamePose(world.BodyPose("turret"), scenario.X_WB * Pose::Translation({0, 0, 0.3}));
-  for (const scenarios::StaticBox& box : scenario.static_boxes) {
+  for (const scenarios::StaticObstacle& box : scenario.static_obstacles) {
     ExpectSamePose(world.BodyPose(box.name), box.X_WO);
     const int geom = world.Id(mjOBJ_GEOM, box.name);
     EXPECT_EQ(world.model->geom_type[geom], mjGEOM_BOX);
-    EXPECT_LT((2 * Eigen::Map<Vector3d>(world.model->geom_size + 3 * geom) - box.size_m).norm(),
-              1e-12);
+    const Vector3d size_m = std::get<Box>(box.shape).size_m;
+    EXPECT_LT((2 * Eigen::Map<Vector3d>(world.model->geom_size + 3 * geom) - size_m).norm(), 1e-12);
   }
   for (const scenarios::MovingObstacle& obstacle : scenario.moving_obstacles) {
     ExpectSamePose(world.BodyPose(obstacle.name), PoseAt(obstacle, EpisodeTime(0)));
@@ -102,6 +109,68 @@ TEST(WorldXml, MakesSolidsOfTheShapesOfTheScenario) {
       EXPECT_NEAR(length, 2 - HalfExtents(obstacle.shape).dot(axis), 1e-9) << obstacle.name;
     }
   }
+}
+
+ConvexMesh Wedge() {
+  const std::vector<Vector3d> vertices = {
+      {0, 0, 0}, {0.5, 0, 0}, {0, 0.3, 0}, {0, 0, 0.2}, {0.4, 0.3, 0.1}};
+  return {std::make_shared<const ConvexPolytope>(vertices)};
+}
+
+// MuJoCo moves and turns what it makes of the vertices; its rays meet the surface where
+// core/shape.h has it all the same.
+TEST(WorldXml, PutsConvexMeshesWhereTheirVerticesAre) {
+  scenarios::Scenario scenario = FullScenario();
+  scenario.static_obstacles.push_back(
+      {"wedge", Pose::FromRollPitchYaw({0.3, 0.2, 0.1}, {2, -1, 1}), Wedge()});
+  scenario.moving_obstacles.push_back(Passing("kite", Wedge(), {-2, 1, 1}, {1, 0, 0}, 0.5));
+  scenario.moving_obstacles.back().rpy_rad = {1, -0.5, 0.2};
+  const Built world(scenario);
+  RandomStream random(1, "rays");
+  const auto check = [&](const std::string& name, const Pose& X_WO) {
+    const int geom = world.Id(mjOBJ_GEOM, name);
+    ASSERT_GE(geom, 0);
+    EXPECT_EQ(world.model->geom_type[geom], mjGEOM_MESH);
+    ExpectSamePose(world.BodyPose(name), X_WO);
+    int num_hits = 0;
+    for (int n = 0; n < 300; ++n) {
+      const Vector3d from = X_WO * (2 * UniformPoint(random, 1).normalized());
+      const Vector3d along =
+          (X_WO * (Vector3d(0.15, 0.1, 0.07) + UniformPoint(random, 0.15)) - from).normalized();
+      const double length =
+          mj_rayMesh(world.model.get(), world.data.get(), geom, from.data(), along.data());
+      double nearest_m = 1;
+      for (double t = 0; t < 4; t += 0.005) {
+        nearest_m =
+            std::min(nearest_m, SignedDistance(Wedge(), X_WO.Inverse() * (from + t * along)));
+      }
+      if (length < 0) {
+        EXPECT_GT(nearest_m, -1e-3);
+        continue;
+      }
+      ++num_hits;
+      EXPECT_NEAR(SignedDistance(Wedge(), X_WO.Inverse() * (from + length * along)), 0, 1e-6);
+    }
+    EXPECT_GT(num_hits, 100);
+  };
+  check("wedge", scenario.static_obstacles.back().X_WO);
+  check("kite", PoseAt(scenario.moving_obstacles.back(), EpisodeTime(0)));
+}
+
+TEST(WorldXml, WithConvexMeshesIsTakenFromATraceToo) {
+  scenarios::Scenario scenario = FullScenario();
+  scenario.static_obstacles.push_back({"wedge", Pose(), Wedge()});
+  const std::string xml = BuildWorldXml(scenario, {}, kTestModels);
+  EXPECT_EQ(LoadForeignModel(xml, "trace")->nmesh, 1);
+}
+
+TEST(WorldXml, StandsTheRobotOnAnyObstacle) {
+  scenarios::Scenario scenario = FullScenario();
+  scenario.static_obstacles.push_back({"wedge", Pose(), Wedge()});
+  scenario.mount = "wedge";
+  const Built world(scenario);
+  EXPECT_TRUE(
+      IsExcluded(*world.model, world.Id(mjOBJ_BODY, "foot"), world.Id(mjOBJ_BODY, "wedge")));
 }
 
 TEST(WorldXml, KeepsTheRobotsDefaultsToTheRobot) {
@@ -223,8 +292,10 @@ TEST(WorldXml, SaysWhichModelIsMissing) {
                   testing::StartsWith("two_link.yaml:17: moving_obstacles[0].appearance: ")));
   scenario = FullScenario();
   scenario.robot = "ghost";
-  EXPECT_THAT([&] { BuildWorldXml(scenario, {}, kTestModels); },
-              testing::ThrowsMessage<InputError>(testing::HasSubstr("ghost.xml")));
+  EXPECT_THAT(
+      [&] { BuildWorldXml(scenario, {}, kTestModels); },
+      testing::ThrowsMessage<InputError>(
+          std::string("two_link.yaml:1: robot.model: there is no 'ghost' in ") + kTestModels));
 }
 
 }  // namespace
