@@ -9,7 +9,6 @@
 #include <csignal>
 #include <exception>
 #include <new>
-#include <stdexcept>
 
 namespace sidestep::import {
 namespace {
@@ -89,6 +88,14 @@ std::string RunIsolated(const std::function<std::string()>& work) {
     throw std::runtime_error("takes more than a minute, or all memory, to read");
   }
   throw std::runtime_error("is so damaged that reading it crashes");
+}
+
+InputError AsInputError(const std::string& path, const std::runtime_error& error) {
+  const std::string text = error.what();
+  const std::size_t behind =
+      text.starts_with(path) ? text.find(": ", path.size()) : std::string::npos;
+  if (behind == std::string::npos) return InputError(path, text);
+  return InputError(text.substr(0, behind), text.substr(behind + 2));
 }
 
 }  // namespace sidestep::import

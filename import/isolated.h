@@ -1,7 +1,10 @@
 #pragma once
 
 #include <functional>
+#include <stdexcept>
 #include <string>
+
+#include "sidestep/core/input_error.h"
 
 namespace sidestep::import {
 
@@ -11,5 +14,8 @@ namespace sidestep::import {
 /// @throws std::runtime_error, one line: the message of what `work` threw, or what became of it
 /// ("crashes", ...).
 std::string RunIsolated(const std::function<std::string()>& work);
+
+/// What RunIsolated threw, told of a file: as it is where it begins with the file's place.
+InputError AsInputError(const std::string& path, const std::runtime_error& error);
 
 }  // namespace sidestep::import

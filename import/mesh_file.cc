@@ -273,17 +273,11 @@ LoadedMesh FromBytes(const std::string& text) {
 LoadedMesh LoadMesh(const std::string& path, const MeshReading& reading) {
   const std::string ending = EndingOf(path);
   CheckFile(path, ending);
-  std::string text;
   try {
     return FromBytes(RunIsolated([&] { return ToBytes(Import(path, ending, reading)); }));
   } catch (const std::runtime_error& error) {
-    text = error.what();
+    throw AsInputError(path, error);
   }
-  // An InputError of the other process begins with the place.
-  const std::size_t behind =
-      text.starts_with(path) ? text.find(": ", path.size()) : std::string::npos;
-  if (behind == std::string::npos) throw InputError(path, text);
-  throw InputError(text.substr(0, behind), text.substr(behind + 2));
 }
 
 }  // namespace sidestep::import
