@@ -13,6 +13,7 @@
 #include "sidestep/import/bounding_capsule.h"
 #include "sidestep/import/home_candidates.h"
 #include "sidestep/import/hull_finish.h"
+#include "sidestep/import/isolated.h"
 #include "sidestep/import/link_spheres.h"
 #include "sidestep/import/robot_files.h"
 #include "sidestep/import/sphere_roles.h"
@@ -42,10 +43,20 @@ std::string NameOf(const std::string& out) {
 
 robot::RobotTree ReadTree(const std::string& file, const import::ArmChoices& choices) {
   if (fs::path(file).extension() != ".xml") return import::ReadUrdfTree(file, choices);
-  robot::RobotTree tree = sim::ReadMjcfTree(file, choices.visuals_as_collisions);
-  import::FinishHulls(choices, &tree);
-  return tree;
+  // MuJoCo is no safer than others with damaged files: once where that does no harm.
+  try {
+    import::RunIsolated([&] {
+      sim::ReadMjcfTree(file, choices.visuals_as_collisions);
+    return std::string();
+  });
 }
+catch (const std::runtime_error& error) {
+  throw import::AsInputError(file, error);
+}
+robot::RobotTree tree = sim::ReadMjcfTree(file, choices.visuals_as_collisions);
+import::FinishHulls(choices, &tree);
+return tree;
+}  // namespace
 
 std::string Spelled(const robot::ArmDescription& arm, const import::LinkPairs& pairs) {
   return Joined(pairs, ", ", [&arm](const robot::LinkPair& pair) {
@@ -76,7 +87,7 @@ void SetArmature(const Eigen::VectorXd& armature, robot::ArmDescription* arm) {
   }
 }
 
-}  // namespace
+}  // namespace sidestep::cli
 
 void ImportRobot(const RobotImport& request) {
   import::ArmChoices choices = request.choices;

@@ -10,12 +10,15 @@
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
+#include <stdexcept>
 #include <unordered_map>
 #include <vector>
 
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/text_file.h"
+#include "sidestep/import/isolated.h"
 
 namespace sidestep::import {
 namespace {
@@ -167,11 +170,8 @@ Eigen::Matrix3d TurnToZUp(const std::string& up_axis) {
   return R;
 }
 
-}  // namespace
-
-LoadedMesh LoadMesh(const std::string& path, const MeshReading& reading) {
-  const std::string ending = EndingOf(path);
-  CheckFile(path, ending);
+// With assimp, which is not to be trusted with damaged files.
+LoadedMesh Import(const std::string& path, const std::string& ending, const MeshReading& reading) {
   LoadedMesh loaded;
   Eigen::Affine3d X_RF = Eigen::Affine3d::Identity();
   if (ending == ".dae") {
@@ -211,6 +211,73 @@ LoadedMesh LoadMesh(const std::string& path, const MeshReading& reading) {
     loaded.notes.push_back("is inside out");
   }
   return loaded;
+}
+
+// A mesh as bytes, from one process to another of this program.
+template <class Number>
+void Append(const Number* numbers, std::size_t count, std::string* bytes) {
+  bytes->append(reinterpret_cast<const char*>(&count), sizeof count);
+  bytes->append(reinterpret_cast<const char*>(numbers), count * sizeof(Number));
+}
+
+std::string ToBytes(const LoadedMesh& loaded) {
+  std::string bytes;
+  Append(loaded.mesh.vertices.data(), static_cast<std::size_t>(loaded.mesh.vertices.size()),
+         &bytes);
+  Append(loaded.mesh.triangles.data(), static_cast<std::size_t>(loaded.mesh.triangles.size()),
+         &bytes);
+  for (const std::string& note : loaded.notes) Append(note.data(), note.size(), &bytes);
+  return bytes;
+}
+
+class Bytes {
+ public:
+  explicit Bytes(const std::string& bytes) : bytes_(bytes) {}
+  bool AreLeft() const { return at_ < bytes_.size(); }
+
+  template <class Number>
+  std::vector<Number> Take() {
+    std::size_t count = 0;
+    std::memcpy(&count, bytes_.data() + at_, sizeof count);
+    std::vector<Number> numbers(count);
+    if (count > 0) {
+      std::memcpy(numbers.data(), bytes_.data() + at_ + sizeof count, count * sizeof(Number));
+    }
+    at_ += sizeof count + count * sizeof(Number);
+    return numbers;
+  }
+
+ private:
+  const std::string& bytes_;
+  std::size_t at_ = 0;
+};
+
+LoadedMesh FromBytes(const std::string& text) {
+  Bytes bytes(text);
+  LoadedMesh loaded;
+  const std::vector<double> vertices = bytes.Take<double>();
+  const std::vector<int> triangles = bytes.Take<int>();
+  loaded.mesh.vertices = Eigen::Map<const Eigen::Matrix3Xd>(
+      vertices.data(), 3, static_cast<Eigen::Index>(vertices.size() / 3));
+  loaded.mesh.triangles = Eigen::Map<const Eigen::Matrix3Xi>(
+      triangles.data(), 3, static_cast<Eigen::Index>(triangles.size() / 3));
+  while (bytes.AreLeft()) {
+    const std::vector<char> note = bytes.Take<char>();
+    loaded.notes.emplace_back(note.begin(), note.end());
+  }
+  return loaded;
+}
+
+}  // namespace
+
+LoadedMesh LoadMesh(const std::string& path, const MeshReading& reading) {
+  const std::string ending = EndingOf(path);
+  CheckFile(path, ending);
+  try {
+    return FromBytes(RunIsolated([&] { return ToBytes(Import(path, ending, reading)); }));
+  } catch (const std::runtime_error& error) {
+    throw AsInputError(path, error);
+  }
 }
 
 }  // namespace sidestep::import

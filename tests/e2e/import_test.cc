@@ -218,6 +218,12 @@ seed: 1
   ASSERT_EQ(finished.exit_code, 0) << finished.err;
   const auto result = nlohmann::json::parse(BytesOf(out / "result.json"));
   EXPECT_EQ(result["outcome"], "goal") << finished.out;
+  const bool is_drawn = GetParam().name == std::string("SevenAxisOfMeshes");
+  if (!is_drawn) return;
+  const std::string still = (out / "still.png").string();
+  const Finished drawn = Sidestep(
+      {"render", (out / "trace.h5").string(), "--still", still, "--at", "1", "--size", "320x240"});
+  EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
 }
 
 INSTANTIATE_TEST_SUITE_P(

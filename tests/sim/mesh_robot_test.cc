@@ -10,6 +10,7 @@
 #include "sidestep/core/input_error.h"
 #include "sidestep/sim/arm_file.h"
 #include "sidestep/sim/foreign_model.h"
+#include "sidestep/sim/ray_caster.h"
 #include "sidestep/sim/robot_agreement.h"
 #include "sidestep/sim/simulation.h"
 #include "sidestep/sim/world_xml.h"
@@ -68,6 +69,20 @@ TEST(MeshRobot, TouchesWhatIsInItsDent) {
   ASSERT_EQ(samples.size(), 1u);
   EXPECT_TRUE(samples[0].in_contact);
   EXPECT_NEAR(samples[0].clearance_m, -0.01, 1e-6);
+}
+
+// What a camera sees of it, and what it draws, is the hull too.
+TEST(MeshRobot, IsMetByRaysWhereItsHullIs) {
+  const scenarios::Scenario scenario = ClampScenario();
+  Simulation simulation(scenario, Clamp(scenario), kTestModels);
+  const World& world = simulation.world();
+  const RayCaster caster(world.model());
+  for (const double x : {0.15, 0.3, 0.42}) {
+    const auto hit = caster.Cast(world.data(), {x, 0.01, 1}, {0, 0, -1});
+    ASSERT_TRUE(hit.has_value());
+    EXPECT_NEAR(hit->distance_m, 0.65, 1e-6);
+    EXPECT_TRUE(caster.IsRobot(hit->geom));
+  }
 }
 
 double PositionOf(const World& world, const char* joint) {
