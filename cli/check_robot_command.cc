@@ -40,9 +40,11 @@ struct CheckRobotOptions {
 constexpr const char* kPicture = "spheres.png";
 constexpr int kPictureSize = 700;
 
-// Two links that were seen to touch are kept apart, and so are those that the robot names.
+// Two links that were seen to touch are kept apart, unless their spheres overlap so often where
+// they do not touch that hardly a plan would be left; and so are those that the robot names.
 std::vector<std::pair<std::string, std::string>> PairsToKeepApart(
     const CheckedRobot& checked, const sim::SelfContactSurvey& survey) {
+  constexpr double kMostFalseAlarms = 0.1;  // of all configurations
   const robot::RobotModel& robot = checked.robot;
   std::vector<std::pair<std::string, std::string>> pairs;
   for (const sim::PairCount& pair : survey.pairs) {
@@ -50,7 +52,9 @@ std::vector<std::pair<std::string, std::string>> PairsToKeepApart(
         robot.self_collision().begin(), robot.self_collision().end(), [&](const auto& listed) {
           return listed.first == pair.first && listed.second == pair.second;
         });
-    if (pair.touched == 0 && !is_listed) continue;
+    const bool is_useful =
+        pair.touched > 0 && pair.false_alarms <= kMostFalseAlarms * survey.num_configurations;
+    if (!is_listed && !is_useful) continue;
     pairs.emplace_back(sim::LinkName(robot, pair.first), sim::LinkName(robot, pair.second));
   }
   return pairs;
@@ -99,9 +103,13 @@ void WriteCover(const CheckRobotOptions& options, const CheckedRobot& checked) {
     variant.links.push_back({sim::LinkName(checked.robot, links[i].link), cover.links[i].spheres,
                              IsOfMount(checked.robot, links[i])});
   }
+  // Which pairs are worth while is told with the spheres in place.
+  variant.self_collision.emplace();
+  WriteFile(options.cover_file, import::VariantText(variant));
+  const robot::RobotModel covered = robot::RobotModel::FromFile(options.cover_file, Pose());
   variant.self_collision = PairsToKeepApart(
       checked,
-      sim::SurveySelfContacts(checked.robot, *checked.model, options.configurations, options.seed));
+      sim::SurveySelfContacts(covered, *checked.model, options.configurations, options.seed));
   WriteFile(options.cover_file, import::VariantText(variant));
   Print("written          {}: {} spheres, at most {:.3g} mm left out\n\n", options.cover_file,
         cover.num_spheres(), 1e3 * cover.cover_m);

@@ -88,7 +88,7 @@ enum class Standing { kForeseen, kMissed, kNeverTouched, kApart };
 
 struct JudgedPair {
   std::string first, second;
-  int touched = 0;
+  int touched = 0, false_alarms = 0;
   Standing standing = Standing::kApart;
 };
 
@@ -106,7 +106,7 @@ std::vector<JudgedPair> JudgePairs(const robot::RobotModel& robot, const RobotRe
                                   ? (is_listed ? Standing::kForeseen : Standing::kMissed)
                                   : (is_listed ? Standing::kNeverTouched : Standing::kApart);
     judged.push_back({sim::LinkName(robot, pair.first), sim::LinkName(robot, pair.second),
-                      pair.touched, standing});
+                      pair.touched, pair.false_alarms, standing});
   }
   return judged;
 }
@@ -115,8 +115,10 @@ std::string PairsText(const std::vector<JudgedPair>& pairs, Standing standing) {
   std::string text;
   for (const JudgedPair& pair : pairs) {
     if (pair.standing != standing) continue;
-    text += fmt::format("{}{}-{}{}", text.empty() ? "" : ", ", pair.first, pair.second,
-                        pair.touched > 0 ? fmt::format(" {}", pair.touched) : "");
+    const bool is_listed = standing == Standing::kForeseen || standing == Standing::kNeverTouched;
+    text += fmt::format("{}{}-{}", text.empty() ? "" : ", ", pair.first, pair.second);
+    if (pair.touched > 0) text += fmt::format(" {}", pair.touched);
+    if (is_listed) text += fmt::format(" (+{})", pair.false_alarms);
   }
   return text.empty() ? "none" : text;
 }
@@ -218,7 +220,8 @@ std::string ReportText(const CheckedRobot& checked, const RobotReport& report) {
     return pair.standing == Standing::kApart;
   });
   text += fmt::format(
-      "self-contact     at {} of {} random configurations (seed {}); pairs of links\n",
+      "self-contact     at {} of {} random configurations (seed {}); pairs of links, at "
+      "how many they touch (+ at how many only their spheres do)\n",
       report.self_contacts.num_touching, report.self_contacts.num_configurations, report.seed);
   text +=
       fmt::format("  touch, in self_collision       {}\n", PairsText(pairs, Standing::kForeseen));
@@ -277,6 +280,7 @@ std::string ReportJson(const CheckedRobot& checked, const RobotReport& report) {
     contacts["pairs"].push_back({{"first", pair.first},
                                  {"second", pair.second},
                                  {"touched", pair.touched},
+                                 {"false_alarms", pair.false_alarms},
                                  {"in_self_collision", is_listed}});
   }
   return bench::JsonText(json);

@@ -19,8 +19,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSurfacePoints = 3000;  // about
+constexpr double kCoarser = 1.6;         // are those for the first choice
 constexpr int kCellsAlong = 48;
-constexpr int kCandidates = 6000;  // about, inside
+constexpr int kCandidates = 4000;  // about, inside
 constexpr int kSteps = 200;        // of a descent
 constexpr int kRemovals = 2;       // tried for each number of spheres
 constexpr int kFew = 8;            // spheres, of which each is tried
@@ -71,9 +72,10 @@ class Search {
   // Covers by balls that stand out more and more, until one ball is enough.
   void Begin() {
     const CoverCandidates candidates = Candidates();
+    const Eigen::Matrix3Xd few_points = SurfacePoints(task_.meshes, kCoarser * apart_m_);
     for (double out_m = task_.cover_m / 4;; out_m *= 1.5) {
       const std::vector<CoverSphere> balls =
-          GreedyCover(candidates, points_, task_.cover_m, out_m, task_.most_spheres);
+          GreedyCover(candidates, few_points, task_.cover_m, out_m, task_.most_spheres);
       if (balls.empty()) continue;
       Keep(ShrinkCover(points_, task_.cover_m, balls, kSteps));
       if (balls.size() <= 2) break;

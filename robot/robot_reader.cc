@@ -23,12 +23,12 @@ constexpr std::size_t kMostJoints = 128;  // with those that are fixed
 class RobotFile {
  public:
   explicit RobotFile(const std::string& path) : path_(path), robot_(YamlReader::FromFile(path)) {
-    if (!robot_.Has("extends")) return;
+    if (!Extends(robot_)) return;
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     path_ = (folder / robot_.GetString("extends")).string();
     variant_ = std::move(robot_);
     robot_ = YamlReader::FromFile(path_);
-    if (robot_.Has("extends")) variant_->Fail("extends", "must be a whole robot, is a variant");
+    if (Extends(robot_)) variant_->Fail("extends", "must be a whole robot, is a variant");
   }
 
   /// Of the whole robot.
@@ -50,6 +50,12 @@ class RobotFile {
   }
 
  private:
+  static bool Extends(
+      const YamlReader& file) {  // is no key of a whole robot, so it is not asked for
+    const std::vector<std::string> keys = file.Keys();
+    return std::find(keys.begin(), keys.end(), "extends") != keys.end();
+  }
+
   std::string path_;
   YamlReader robot_;
   std::optional<YamlReader> variant_;

@@ -92,32 +92,47 @@ SelfContactSurvey SurveySelfContacts(const robot::RobotModel& robot, const mjMod
     if (model.geom_contype[geom] == 0 && model.geom_conaffinity[geom] == 0) continue;
     solid.insert(CarrierOfBody(robot, model, model.geom_bodyid[geom]));
   }
-  std::map<std::pair<int, int>, int> touched;
-  for (const int first : solid) {
-    for (const int second : solid) {
-      if (first < second) touched[{first, second}] = 0;
-    }
-  }
   SelfContactSurvey survey;
   survey.num_configurations = num_configurations;
+  for (const int first : solid) {
+    for (const int second : solid) {
+      if (first < second) survey.pairs.push_back({first, second});
+    }
+  }
+  std::map<int, std::vector<Eigen::Index>> spheres;  // of each link
+  for (int s = 0; s < robot.num_spheres(); ++s) {
+    spheres[CarrierOf(robot, robot.spheres()[static_cast<std::size_t>(s)].link)].push_back(s);
+  }
+  const auto overlap = [&](const PairCount& pair, const Eigen::Matrix3Xd& p_WS) {
+    for (const Eigen::Index a : spheres[pair.first]) {
+      for (const Eigen::Index b : spheres[pair.second]) {
+        const double reach_m = robot.sphere_radii_m()[a] + robot.sphere_radii_m()[b];
+        if ((p_WS.col(a) - p_WS.col(b)).squaredNorm() < reach_m * reach_m) return true;
+      }
+    }
+    return false;
+  };
   const MujocoDataPtr data = MakeMujocoData(model);
   RandomStream random(seed, "self-contacts");
   for (int k = 0; k < num_configurations; ++k) {
-    PutAt(robot, model, DrawConfiguration(robot, random), data.get());
+    const Eigen::VectorXd q = DrawConfiguration(robot, random);
+    PutAt(robot, model, q, data.get());
     mj_collision(&model, data.get());
     survey.num_touching += data->ncon > 0;
-    std::set<std::pair<int, int>> pairs;
+    std::set<std::pair<int, int>> touching;
     for (int c = 0; c < data->ncon; ++c) {
       const mjContact& contact = data->contact[c];
-      pairs.insert(std::minmax({CarrierOfBody(robot, model, model.geom_bodyid[contact.geom1]),
-                                CarrierOfBody(robot, model, model.geom_bodyid[contact.geom2])}));
+      touching.insert(std::minmax({CarrierOfBody(robot, model, model.geom_bodyid[contact.geom1]),
+                                   CarrierOfBody(robot, model, model.geom_bodyid[contact.geom2])}));
     }
-    for (const auto& pair : pairs) {
-      if (pair.first != pair.second) ++touched[pair];
+    const Eigen::Matrix3Xd p_WS = robot.ComputeSphereCenters(q, /*with_jacobian=*/false).p_WS;
+    for (PairCount& pair : survey.pairs) {
+      if (touching.count({pair.first, pair.second}) > 0) {
+        ++pair.touched;
+      } else if (overlap(pair, p_WS)) {
+        ++pair.false_alarms;
+      }
     }
-  }
-  for (const auto& [pair, count] : touched) {
-    survey.pairs.push_back({pair.first, pair.second, count});
   }
   return survey;
 }

@@ -33,10 +33,12 @@ struct SelfContact {
 std::vector<SelfContact> FindSelfContacts(const robot::RobotModel& robot, const mjModel& model,
                                           const Eigen::VectorXd& q);
 
-/// At how many random configurations two links touched.
+/// At how many random configurations two links touched, and at how many their spheres overlapped
+/// though they did not touch.
 struct PairCount {
   int first = 0, second = 0;  ///< first < second
   int touched = 0;
+  int false_alarms = 0;
 };
 struct SelfContactSurvey {
   int num_configurations = 0;
