@@ -19,12 +19,6 @@ class GpCeresPlanner final : public SeededPlanner {
   GpCeresPlanner(const robot::RobotModel& robot, const PlannerSettings& settings,
                  const GpSettings& gp = {});
 
-  PlannerCapabilities capabilities() const override {
-    PlannerCapabilities mine = SeededPlanner::capabilities();
-    mine.iterations_for_one = 2;
-    return mine;
-  }
-
  private:
   std::unique_ptr<TrajectoryOptimizer> MakeOptimizer(const PlanRequest& request) const override;
 
