@@ -115,8 +115,8 @@ void CheckRobotIsThere(const scenarios::Scenario& scenario, const ModelFolders& 
                                     Joined(models.folders()) + "), or a path with a /, is '" +
                                     scenario.robot + "'");
   }
-  const std::string file = RobotFolder(scenario, models) + "/" +
-                           robot::DescriptionFile(scenario.robot_variant);
+  const std::string file =
+      RobotFolder(scenario, models) + "/" + robot::DescriptionFile(scenario.robot_variant);
   std::error_code error;
   if (std::filesystem::exists(file, error)) return;
   throw scenarios::WrongValue(scenario, "robot.model", "there is no " + file);

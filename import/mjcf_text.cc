@@ -1,7 +1,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <optional>
 
+#include "sidestep/core/convex_polytope.h"
 #include "sidestep/core/joined.h"
 #include "sidestep/core/number_text.h"
 #include "sidestep/import/arm_pose.h"
@@ -71,7 +73,21 @@ struct SizeText {
   std::string operator()(const Ellipsoid& ellipsoid) const {
     return Numbers(ellipsoid.semi_axes_m);
   }
+  std::string operator()(const ConvexMesh&) const { return ""; }  // its vertices say it
 };
+
+// The corners of a solid that is written as a mesh.
+std::optional<Eigen::Matrix3Xd> CornersOf(const robot::LinkSolid& solid) {
+  if (const auto* const hull = std::get_if<robot::HullSolid>(&solid.form)) return hull->vertices;
+  const auto* const mesh = std::get_if<ConvexMesh>(&std::get<Shape>(solid.form));
+  if (mesh == nullptr) return std::nullopt;
+  const std::vector<Eigen::Vector3d>& vertices = mesh->hull->vertices();
+  Eigen::Matrix3Xd corners(3, static_cast<Eigen::Index>(vertices.size()));
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    corners.col(static_cast<Eigen::Index>(i)) = vertices[i];
+  }
+  return corners;
+}
 
 class Writer {
  public:
@@ -106,15 +122,15 @@ class Writer {
     bool has_meshes = false;
     for (const robot::ArmLink& link : arm_.links) {
       for (std::size_t i = 0; i < link.solids.size(); ++i) {
-        const auto* const hull = std::get_if<robot::HullSolid>(&link.solids[i].form);
-        if (hull == nullptr) continue;
+        const std::optional<Eigen::Matrix3Xd> corners = CornersOf(link.solids[i]);
+        if (!corners) continue;
         if (!has_meshes) Line(1, "<asset>");
         has_meshes = true;
         if (!link.solids[i].source.empty()) {
           Line(2, "<!-- the convex hull of " + InComment(link.solids[i].source) + " -->");
         }
         Line(2, "<mesh name=\"" + MeshName(link, i) + "\" vertex=\"" +
-                    Numbers(hull->vertices.reshaped()) + "\"/>");
+                    Numbers(corners->reshaped()) + "\"/>");
       }
     }
     if (has_meshes) Line(1, "</asset>");
@@ -164,10 +180,11 @@ class Writer {
   void WriteGeom(const robot::ArmLink& link, std::size_t i, int depth) {
     const robot::LinkSolid& solid = link.solids[i];
     std::string form;
-    if (const auto* const shape = std::get_if<Shape>(&solid.form)) {
-      form = "type=\"" + ShapeName(*shape) + "\" size=\"" + std::visit(SizeText{}, *shape) + "\"";
-    } else {
+    if (CornersOf(solid)) {
       form = "type=\"mesh\" mesh=\"" + MeshName(link, i) + "\"";
+    } else {
+      const Shape& shape = std::get<Shape>(solid.form);
+      form = "type=\"" + ShapeName(shape) + "\" size=\"" + std::visit(SizeText{}, shape) + "\"";
     }
     Line(depth, "<geom " + form + PlaceText(solid.X_LS) + "/>");
   }

@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "sidestep/core/convex_polytope.h"
+
 namespace sidestep::import {
 namespace {
 
@@ -140,6 +142,21 @@ struct MakeOuter {
     const double longest = ellipsoid.semi_axes_m.maxCoeff();
     TriangleMesh mesh = OuterCapsule(1, 0, tolerance_m / longest);
     mesh.vertices = ellipsoid.semi_axes_m.asDiagonal() * mesh.vertices;
+    return mesh;
+  }
+  TriangleMesh operator()(const ConvexMesh& convex) const {
+    TriangleMesh mesh;
+    const auto& vertices = convex.hull->vertices();
+    const auto& triangles = convex.hull->triangles();
+    mesh.vertices.resize(3, static_cast<Eigen::Index>(vertices.size()));
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      mesh.vertices.col(static_cast<Eigen::Index>(i)) = vertices[i];
+    }
+    mesh.triangles.resize(3, static_cast<Eigen::Index>(triangles.size()));
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      mesh.triangles.col(static_cast<Eigen::Index>(i)) =
+          Eigen::Map<const Eigen::Vector3i>(triangles[i].corners.data());
+    }
     return mesh;
   }
 };

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "sidestep/core/convex_polytope.h"
+
 namespace sidestep::import {
 namespace {
 
@@ -37,6 +39,9 @@ struct Appender {
     }
   }
   void operator()(const Ellipsoid& ellipsoid) const { AddBox(ellipsoid.semi_axes_m); }
+  void operator()(const ConvexMesh& mesh) const {
+    for (const Eigen::Vector3d& vertex : mesh.hull->vertices()) Add(vertex);
+  }
 };
 
 }  // namespace
