@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "sidestep/core/convex_polytope.h"
+
 namespace sidestep::robot {
 namespace {
 
@@ -36,6 +38,24 @@ Eigen::Matrix3Xd Revolve(const Profile& profile) {
     }
   }
   return points;
+}
+
+// Points all over triangles, whose corners are columns.
+Eigen::Matrix3Xd SampleFaces(const std::vector<Eigen::Matrix3d>& faces) {
+  constexpr int kSides = 12;
+  std::vector<Eigen::Vector3d> points;
+  for (const Eigen::Matrix3d& face : faces) {
+    for (int i = 0; i <= kSides; ++i) {
+      for (int k = 0; i + k <= kSides; ++k) {
+        points.push_back(face * Eigen::Vector3d(i, k, kSides - i - k) / kSides);
+      }
+    }
+  }
+  Eigen::Matrix3Xd columns(3, static_cast<Eigen::Index>(points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    columns.col(static_cast<Eigen::Index>(i)) = points[i];
+  }
+  return columns;
 }
 
 struct Sampler {
@@ -79,6 +99,17 @@ struct Sampler {
   Eigen::Matrix3Xd operator()(const Ellipsoid& ellipsoid) const {
     return ellipsoid.semi_axes_m.asDiagonal() * (*this)(Sphere{1.0});
   }
+  Eigen::Matrix3Xd operator()(const ConvexMesh& mesh) const {
+    std::vector<Eigen::Matrix3d> faces;
+    for (const ConvexPolytope::Triangle& triangle : mesh.hull->triangles()) {
+      Eigen::Matrix3d& face = faces.emplace_back();
+      for (int i = 0; i < 3; ++i) {
+        const int corner = triangle.corners[static_cast<std::size_t>(i)];
+        face.col(i) = mesh.hull->vertices()[static_cast<std::size_t>(corner)];
+      }
+    }
+    return SampleFaces(faces);
+  }
 };
 
 // The corners of each triangle of a mesh's hull: see mesh_graph in mjmodel.h.
@@ -108,20 +139,7 @@ Eigen::Matrix3Xd SampleSurface(const Shape& shape) { return std::visit(Sampler{}
 
 Eigen::Matrix3Xd SampleGeom(const mjModel& model, int geom) {
   if (model.geom_type[geom] != mjGEOM_MESH) return SampleSurface(ShapeOf(model, geom));
-  constexpr int kSides = 12;
-  std::vector<Eigen::Vector3d> points;
-  for (const Eigen::Matrix3d& face : HullFaces(model, model.geom_dataid[geom])) {
-    for (int i = 0; i <= kSides; ++i) {
-      for (int k = 0; i + k <= kSides; ++k) {
-        points.push_back(face * Eigen::Vector3d(i, k, kSides - i - k) / kSides);
-      }
-    }
-  }
-  Eigen::Matrix3Xd columns(3, static_cast<Eigen::Index>(points.size()));
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    columns.col(static_cast<Eigen::Index>(i)) = points[i];
-  }
-  return columns;
+  return SampleFaces(HullFaces(model, model.geom_dataid[geom]));
 }
 
 double DistanceToGeom(const mjModel& model, int geom, const Eigen::Vector3d& p_GQ) {
