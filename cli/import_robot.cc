@@ -43,20 +43,18 @@ std::string NameOf(const std::string& out) {
 
 robot::RobotTree ReadTree(const std::string& file, const import::ArmChoices& choices) {
   if (fs::path(file).extension() != ".xml") return import::ReadUrdfTree(file, choices);
+  const auto read = [&] { return sim::ReadMjcfTree(file, choices.visuals_as_collisions); };
   // MuJoCo is no safer than others with damaged files: once where that does no harm.
   try {
-    import::RunIsolated([&] {
-      sim::ReadMjcfTree(file, choices.visuals_as_collisions);
-    return std::string();
-  });
+    const auto try_it = [&] { return read().file; };
+    static_cast<void>(import::RunIsolated(try_it));
+  } catch (const std::runtime_error& error) {
+    throw import::AsInputError(file, error);
+  }
+  robot::RobotTree tree = read();
+  FinishHulls(choices, &tree);
+  return tree;
 }
-catch (const std::runtime_error& error) {
-  throw import::AsInputError(file, error);
-}
-robot::RobotTree tree = sim::ReadMjcfTree(file, choices.visuals_as_collisions);
-import::FinishHulls(choices, &tree);
-return tree;
-}  // namespace
 
 std::string Spelled(const robot::ArmDescription& arm, const import::LinkPairs& pairs) {
   return Joined(pairs, ", ", [&arm](const robot::LinkPair& pair) {
@@ -87,6 +85,45 @@ void SetArmature(const Eigen::VectorXd& armature, robot::ArmDescription* arm) {
   }
 }
 
+// All of robot.yaml that is not the arm itself. Says what a person should know of it.
+import::RobotDetails DetailsOf(const robot::ArmDescription& arm, const sim::ArmSurvey& survey,
+                               const import::SphereRequest& spheres){import::RobotDetails details;
+details.spheres = import::CoverArm(arm, spheres);
+details.capsules = CapsulesOf(arm);
+if (details.capsules.empty()) {
+  Print("more than {} links can touch: no capsules are written, by which it would be supervised\n",
+        robot::RobotModel::kMaxCapsules);
+}
+const std::vector<int> mount = import::MountSpheres(arm, details.spheres);
+details.home = import::ChooseHome(arm, details.spheres, mount, survey.sometimes, survey.free);
+details.mount_spheres = import::WithSpheresBelow(arm, details.spheres, mount, details.home);
+if (const std::size_t more = details.mount_spheres.size() - mount.size(); more > 0) {
+  Print("{} spheres of what moves reach below the base wherever it was put: they are mounted\n",
+        more);
+}
+details.self_collision =
+    import::SeparablePairs(arm, details.spheres, survey.sometimes, details.home);
+details.stiffness = survey.stiffness;
+details.damping = survey.damping;
+details.bandwidth_rad_s = survey.bandwidth_rad_s;
+return details;
+}  // namespace
+
+// The two files, held to each other.
+robot::RobotModel WriteRobot(const std::string& out, const robot::ArmDescription& arm,
+                             const import::RobotDetails& details,
+                             const import::LinkPairs& without_contact) {
+  const std::string xml_name = arm.name + ".xml";
+  const OutFolder folder(out, {"robot.yaml", xml_name});
+  const std::string xml_path = folder.path() + "/" + xml_name;
+  const std::string yaml_path = folder.path() + "/robot.yaml";
+  WriteFile(xml_path, import::MjcfText(arm, without_contact));
+  WriteFile(yaml_path, import::RobotYamlText(arm, details));
+  robot::RobotModel robot = robot::RobotModel::FromFile(yaml_path, Pose());
+  sim::CheckAgreement(robot, *sim::LoadArmFile(xml_path), xml_path);
+  return robot;
+}
+
 }  // namespace sidestep::cli
 
 void ImportRobot(const RobotImport& request) {
@@ -101,14 +138,15 @@ void ImportRobot(const RobotImport& request) {
   robot::ArmDescription& arm = imported.arm;
   for (const std::string& note : imported.notes) Print("{}\n", note);
 
-  const std::string xml_name = choices.name + ".xml";
   import::LinkPairs without_contact = import::PairsWithoutContact(arm, {});
   const sim::MujocoModelPtr model =
       sim::LoadArmText(import::MjcfText(arm, without_contact), request.file + ": its MJCF");
-  const sim::ArmSurvey survey = sim::SurveyArm(
-      *model, arm,
-      {import::SampleConfigurations(arm, kConfigurations), import::HomeCandidates(arm),
-       request.bandwidth_rad_s, request.armature_share});
+  sim::SurveySettings settings;
+  settings.configurations = import::SampleConfigurations(arm, kConfigurations);
+  settings.candidates = import::HomeCandidates(arm);
+  settings.bandwidth_rad_s = request.bandwidth_rad_s;
+  settings.armature_share = request.armature_share;
+  const sim::ArmSurvey survey = sim::SurveyArm(*model, arm, settings);
   if (survey.free.empty()) {
     throw InputError(request.file,
                      "it touches itself wherever it was put; are its collisions right?");
@@ -117,45 +155,15 @@ void ImportRobot(const RobotImport& request) {
     Print("touch each other nearly always, which is left out: {}\n", Spelled(arm, survey.always));
     without_contact = import::PairsWithoutContact(arm, survey.always);
   }
-
   SetArmature(survey.armature, &arm);
-  import::RobotDetails details;
-  details.spheres = import::CoverArm(arm, request.spheres);
-  details.capsules = CapsulesOf(arm);
-  if (details.capsules.empty()) {
-    Print(
-        "more than {} links can touch: no capsules are written, by which it would be supervised\n",
-        robot::RobotModel::kMaxCapsules);
-  }
-  const std::vector<int> mount = import::MountSpheres(arm, details.spheres);
-  details.home = import::ChooseHome(arm, details.spheres, mount, survey.sometimes, survey.free);
-  details.mount_spheres = import::WithSpheresBelow(arm, details.spheres, mount, details.home);
-  if (const std::size_t more = details.mount_spheres.size() - mount.size(); more > 0) {
-    Print(
-        "{} spheres of what moves reach below the base wherever it was put: they count as "
-        "mounted\n",
-        more);
-  }
-  details.self_collision =
-      import::SeparablePairs(arm, details.spheres, survey.sometimes, details.home);
-  details.stiffness = survey.stiffness;
-  details.damping = survey.damping;
-  details.bandwidth_rad_s = survey.bandwidth_rad_s;
-
-  const OutFolder folder(request.out, {"robot.yaml", xml_name});
-  const std::string xml_path = folder.path() + "/" + xml_name;
-  const std::string yaml_path = folder.path() + "/robot.yaml";
-  WriteFile(xml_path, import::MjcfText(arm, without_contact));
-  WriteFile(yaml_path, import::RobotYamlText(arm, details));
-  const robot::RobotModel robot = robot::RobotModel::FromFile(yaml_path, Pose());
-  sim::CheckAgreement(robot, *sim::LoadArmFile(xml_path), xml_path);
-
+  const robot::RobotModel robot =
+      WriteRobot(request.out, arm, DetailsOf(arm, survey, request.spheres), without_contact);
   Print(
       "{}: {} joints, {} links, {} spheres, {} pairs of links to be kept apart (of {} that touch "
       "at some of {} configurations)\n",
       choices.name, robot.num_joints(), arm.links.size(), robot.num_spheres(),
       robot.self_collision().size(), survey.sometimes.size(), kConfigurations);
-  Print("written  {} and {}\n", yaml_path, xml_path);
+  Print("written  {0}/robot.yaml and {0}/{1}.xml\n", request.out, choices.name);
 }
 
 }  // namespace sidestep::cli

@@ -223,7 +223,7 @@ class Maker {
     return links;
   }
 
-  // By the boxes around the solids.
+  // Of the shape of its hulls, and of boxes around other solids.
   bool GiveWeight(const std::vector<int>& links) {
     for (const int number : links) {
       robot::ArmLink& link = arm_.links[static_cast<std::size_t>(number + 1)];
