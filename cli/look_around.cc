@@ -24,6 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kAfterTheLast_s = 0.1;  // picture that is recorded: it is planned around
 constexpr std::uintmax_t kMostTable_bytes = 1 << 30;
 
 std::string PathIn(const std::string& folder, const char* name) {
@@ -39,7 +40,7 @@ Pose PlaceOfCamera(const scenarios::Scenario& scenario,
 double HorizonsOf(const LookAroundOptions& options, const ReadyCamera& camera,
                   const scenarios::Scenario& scenario) {
   if (options.seconds > 0) return options.seconds / scenario.horizon_s;
-  if (camera.ends_at) return camera.ends_at->seconds() / scenario.horizon_s;
+  if (camera.ends_at) return (camera.ends_at->seconds() + kAfterTheLast_s) / scenario.horizon_s;
   return 2;
 }
 
