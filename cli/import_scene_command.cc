@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -31,7 +32,7 @@ struct ImportOptions {
   std::string file, request, robot, out;
   std::vector<double> base;  // x, y, z [m] and yaw [rad]
   int seed = 1;
-  std::vector<std::string> models;
+  std::vector<std::string> leave_out, models;
   std::string command;  // as it was typed
 };
 
@@ -57,6 +58,26 @@ std::string OneLine(std::string text) {
   return text;
 }
 
+// Where a request has what becomes the task.
+std::map<std::string, int> LinesOf(const import::ImportedRequest& request) {
+  std::map<std::string, int> lines;
+  if (request.start) lines["task.start"] = request.start->line;
+  if (request.goal) lines["task.goal"] = request.goal->line;
+  if (request.goal_pose) lines["task.goal"] = request.goal_pose->line;
+  return lines;
+}
+
+// Takes things out by their names in the scenario, such as what the hand is to hold at the goal.
+void LeaveOut(const std::vector<std::string>& names, import::ImportedScene& scene) {
+  for (const std::string& name : names) {
+    const auto is_it = [&](const scenarios::StaticObstacle& thing) { return thing.name == name; };
+    if (std::erase_if(scene.obstacles, is_it) == 0) {
+      throw InputError("--leave-out", "the scene has no '" + name + "'");
+    }
+    scene.left_out.push_back("'" + name + "', as asked for");
+  }
+}
+
 Pose BaseOf(const ImportOptions& options) {
   if (options.base.empty()) return Pose();
   const double yaw = options.base.size() > 3 ? options.base[3] : 0;
@@ -71,11 +92,13 @@ int ImportScene(const ImportOptions& options) {
   const bool is_mjcf = std::filesystem::path(options.file).extension() == ".xml";
   import::ImportedScene scene =
       is_mjcf ? ReadMjcfScene(options.file) : import::ReadMoveItScene(options.file);
+  LeaveOut(options.leave_out, scene);
   scenario.description =
       "Imported from " + EscapeInvalidUtf8(std::filesystem::path(options.file).filename().string());
   scenario.seed = static_cast<std::uint64_t>(options.seed);
   import::PutInto(scene, draft.robot, scenario);
   RandomStream random(scenario.seed, "task");
+  std::map<std::string, int> lines;
   if (options.request.empty()) {
     if (!import::ChooseTask(scenario, draft.robot, random, TouchesNothing(draft, paths))) {
       throw InputError(options.file, "no start and goal were found at which '" + options.robot +
@@ -86,9 +109,12 @@ int ImportScene(const ImportOptions& options) {
     for (const std::string& line : import::PutInto(request, draft.robot, random, scenario)) {
       scene.left_out.push_back(line);
     }
+    lines = LinesOf(request);
   }
   import::FitHorizon(scenario, draft.robot);
-  scenarios::Scenario judged = scenario;  // as `sidestep run` will
+  scenarios::Scenario judged = scenario;  // as `sidestep run` will, with complaints of the request
+  judged.file = options.request.empty() ? options.file : options.request;
+  judged.lines = std::move(lines);
   bench::ResolvePlanner(judged);
   bench::ResolveTask(judged, draft.robot);
 
@@ -129,6 +155,11 @@ void AddImportSceneCommand(CommandLine& line) {
           "[0,0,0,0]")
       ->delimiter(',')
       ->expected(3, 4);
+  command
+      ->add_option("--leave-out", options->leave_out,
+                   "A thing to leave out, such as what the hand holds at the goal; may be repeated")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
   command->add_option("--out", options->out, "FILE.yaml to write, a new one")->required();
   command
       ->add_option("--seed", options->seed,

@@ -192,6 +192,7 @@ std::optional<NamedJoints> ReadJointGoal(const std::string& file, const YamlRead
   if (!goal.IsListOfMaps("joint_constraints")) return std::nullopt;
   NamedJoints joints;
   joints.place = PlaceOf(file, goal, "joint_constraints", "goal_constraints[0].joint_constraints");
+  joints.line = goal.Line("joint_constraints");
   for (const YamlReader& one : goal.GetMaps("joint_constraints")) {
     joints.names.push_back(one.GetString("joint_name"));
     joints.positions.push_back(one.GetDouble("position"));
@@ -210,6 +211,7 @@ std::optional<NamedTarget> ReadPoseGoal(const std::string& file, const YamlReade
   const YamlReader orientation = std::move(goal.GetMaps(orientations).front());
   NamedTarget target;
   target.place = PlaceOf(file, goal, positions, "goal_constraints[0].position_constraints");
+  target.line = goal.Line(positions);
   target.link = position.GetString("link_name");
   if (orientation.GetString("link_name") != target.link) {
     goal.Fail(orientations, "must be of the link of position_constraints, '" + target.link + "'");
@@ -269,6 +271,7 @@ ImportedRequest ReadRequest(const YamlReader& file, const std::string& path) {
     const YamlReader state = file.GetMap("start_state").GetMap("joint_state");
     NamedJoints joints;
     joints.place = PlaceOf(path, state, "name", "start_state.joint_state.name");
+    joints.line = state.Line("name");
     joints.names = state.GetStrings("name");
     joints.positions = state.GetDoubles("position");
     if (joints.names.size() != joints.positions.size()) {

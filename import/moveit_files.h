@@ -22,6 +22,7 @@ struct NamedJoints {
   std::vector<std::string> names;
   std::vector<double> positions;
   std::string place;  ///< FILE:LINE: KEY, for complaints
+  int line = 1;
 };
 
 /// Where a link is to be, by its name there, in the scene's frame.
@@ -29,6 +30,7 @@ struct NamedTarget {
   std::string link;
   Pose X_WL;
   std::string place;
+  int line = 1;
 };
 
 /// From where to where.

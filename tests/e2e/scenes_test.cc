@@ -200,8 +200,11 @@ TEST_F(Scenes, ThatAreUnusableEndTheCommand) {
                 "world: {collision_objects: [{id: a, primitives: [{type: box, dimensions: [1, 1, "
                 "1]}], primitive_poses: [{position: [0.5, 0, 0.8]}]}]}"),
           {"--request", kMoveIt + "request.yaml"}),
-      "task.start: the robot's sphere ");
+      "request.yaml:3: task.start: the robot's sphere ");
   EXPECT_FALSE(fs::exists(Path("mine.yaml")));
+  Bad(import(Path("c.yaml"), {"--leave-out", "b"}), "--leave-out: the scene has no 'b'");
+  Good(import(Path("c.yaml"), {"--request", kMoveIt + "request.yaml", "--leave-out", "a"}));
+  EXPECT_THAT(last_.err, HasSubstr("left out: 'a', as asked for\n"));
 }
 
 }  // namespace
