@@ -119,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(
         Course{"Crosses10cmPerS",
                "{linear: {start_m: [0.4, 1.0, 0.45], direction: [0, -1, 0], speed_m_s: 0.1}}"},
         Course{"Crosses20cmPerS",
-               "{linear: {start_m: [0.4, 1.4, 0.45], direction: [0, -1, 0], speed_m_s: 0.2}}"},
+               "{linear: {start_m: [0.4, 1.6, 0.45], direction: [0, -1, 0], speed_m_s: 0.2}}"},
         Course{"Crosses25cmPerS", kCrossing},
         Course{"Stops",
                "{linear: {start_m: [0.4, 1.65, 0.45], direction: [0, -1, 0], speed_m_s: 0.25, "
