@@ -111,7 +111,7 @@ class Viewer {
         scenario_(scenarios::ParseScenario(recording.scenario_yaml, "the recorded scenario")) {}
 
   render::Image Draw(const robot::Frame& frame) const {
-    render::CameraView view;
+    render::CameraNotes view;
     view.camera = frame.camera;
     view.X_WC = X_WC_;
     const CycleRecord* const cycle = CycleBefore(recording_, frame.t);
@@ -135,7 +135,7 @@ class Viewer {
                   std::to_string(look.tags_px.size()) + " tags, " +
                       (sees.empty() ? "sees nothing that it follows" : sees),
                   PlanOf(cycle)};
-    return render::DrawCameraView(frame.image, view, font_);
+    return render::DrawCameraNotes(frame.image, view, font_);
   }
 
  private:

@@ -11,7 +11,8 @@ namespace {
 namespace fci = robot::fci;
 
 constexpr std::chrono::seconds kConnectTime(10);
-constexpr std::chrono::seconds kReplyTime(60);  // a picture is drawn meanwhile
+// A picture is drawn meanwhile, perhaps on a machine that has much else to do; time stands still.
+constexpr std::chrono::seconds kReplyTime(600);
 
 }  // namespace
 

@@ -44,7 +44,7 @@ void DrawLine(const Eigen::Vector2d& from, const Eigen::Vector2d& to, Color colo
 
 class Drawing {
  public:
-  Drawing(const CameraView& view, Image* image)
+  Drawing(const CameraNotes& view, Image* image)
       : view_(view), X_CW_(view.X_WC.Inverse()), image_(*image) {}
 
   void Line(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W, Color color,
@@ -74,7 +74,7 @@ class Drawing {
   }
 
  private:
-  const CameraView& view_;
+  const CameraNotes& view_;
   Pose X_CW_;
   Image& image_;
 };
@@ -97,7 +97,7 @@ void DrawText(const std::vector<std::string>& lines, const Font& font, Image* im
 
 }  // namespace
 
-Image DrawCameraView(const robot::GreyImage& picture, const CameraView& view, const Font& font) {
+Image DrawCameraNotes(const robot::GreyImage& picture, const CameraNotes& view, const Font& font) {
   Image image = InColor(picture);
   Drawing drawing(view, &image);
   for (const ViewedBox& box : view.boxes) drawing.Box(box);

@@ -20,7 +20,7 @@ struct ViewedBox {
 };
 
 /// What is known of a camera's picture.
-struct CameraView {
+struct CameraNotes {
   robot::CameraIntrinsics camera;
   Pose X_WC;
   std::vector<Eigen::Matrix<double, 2, 4>> tags_px;  ///< corners of each, as they were found
@@ -30,6 +30,6 @@ struct CameraView {
 };
 
 /// The picture in grey, and all of that drawn into it. What is behind the camera is left out.
-Image DrawCameraView(const robot::GreyImage& picture, const CameraView& view, const Font& font);
+Image DrawCameraNotes(const robot::GreyImage& picture, const CameraNotes& view, const Font& font);
 
 }  // namespace sidestep::render
