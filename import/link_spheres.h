@@ -13,9 +13,8 @@ struct SphereRequest {
   int num_spheres = 0;  ///< of all links together, at most; 0: as many as it takes
 };
 
-/// Collision spheres of an arm, link by link. These hold all that can touch: those around the cubes
-/// of a grid, as fine as `num_spheres` allows.
-/// @throws InputError where they would be more than was asked for.
+/// Collision spheres of an arm, link by link, as CoverLinks finds them (sphere_cover.h).
+/// @throws InputError for a mesh that is not closed.
 std::vector<robot::CollisionSphere> CoverArm(const robot::ArmDescription& arm,
                                              const SphereRequest& request);
 
