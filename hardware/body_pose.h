@@ -61,7 +61,7 @@ struct EdgeErrors {
 };
 EdgeErrors ErrorsOfEdge(const Eigen::Vector2d& from_px, const Eigen::Vector2d& to_px,
                         double sigma_px);
-inline constexpr double kEdgeSigma_px = 0.09;   ///< of rendered pictures (docs/sensors.md)
+inline constexpr double kEdgeSigma_px = 0.09;  ///< of rendered pictures (docs/sensors.md)
 
 /// The pose that explains the edges of all tags of a body best, in pixels: a joint least-squares
 /// fit from either solution of the largest tag (hardware/planar_pose.h).

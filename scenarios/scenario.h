@@ -168,7 +168,7 @@ struct Scenario {
   /// robots are looked for.
   std::string robot_path;
   std::string robot_variant;  ///< of its description, as `covered` of `panda:covered`; may be empty
-  Pose X_WB;          ///< of the robot's base
+  Pose X_WB;                  ///< of the robot's base
   std::string mount;  ///< what the robot stands on: its mount links may touch it; empty: the floor
   std::string start_name, goal_name;  ///< empty when given as joints
   Eigen::VectorXd q_start, q_goal;    ///< filled when given as joints; else looked up by the name

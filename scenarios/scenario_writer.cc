@@ -156,9 +156,8 @@ std::string ConfigurationText(const std::string& name, const Eigen::VectorXd& q)
 }
 
 std::string RobotText(const Scenario& scenario) {
-  const std::string model =
-      (scenario.robot_path.empty() ? scenario.robot : scenario.robot_path) +
-      (scenario.robot_variant.empty() ? "" : ":" + scenario.robot_variant);
+  const std::string model = (scenario.robot_path.empty() ? scenario.robot : scenario.robot_path) +
+                            (scenario.robot_variant.empty() ? "" : ":" + scenario.robot_variant);
   return "robot:\n  model: " + Quoted(model) + "\n  base: {" +
          PoseKeys("position_m", scenario.X_WB) + "}\n" +
          (scenario.mount.empty() ? "" : "  mount: " + Quoted(scenario.mount) + "\n") +

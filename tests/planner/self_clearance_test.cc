@@ -156,7 +156,8 @@ std::vector<std::string> RobotsAndVariants() {
   std::vector<std::string> names;
   for (const std::string& name : robot::RobotModel::ListNames(kModels)) {
     names.push_back(name);
-    for (const std::string& variant : robot::VariantNames(kModels + ("/" + name))) names.push_back(variant);
+    for (const std::string& variant : robot::VariantNames(kModels + ("/" + name)))
+      names.push_back(variant);
   }
   return names;
 }

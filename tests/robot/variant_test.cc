@@ -109,8 +109,8 @@ TEST_F(Variant, ThatIsNotThereIsToldWithThoseThatAre) {
     Load("gone");
     FAIL() << "was found";
   } catch (const InputError& error) {
-    EXPECT_EQ(error.what(),
-              temporary_.path().string() + "/panda: holds no variant 'panda:gone' (known: panda:round)");
+    EXPECT_EQ(error.what(), temporary_.path().string() +
+                                "/panda: holds no variant 'panda:gone' (known: panda:round)");
   }
 }
 
