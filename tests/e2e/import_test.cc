@@ -130,7 +130,8 @@ class Import : public ::testing::TestWithParam<Case> {
   std::string Urdf() const { return (kSource / "tests/data/urdf" / GetParam().file).string(); }
 
   void ImportIt() {
-    std::vector<std::string> arguments = {"import", Urdf(), "--out", (models_ / "arm").string()};
+    std::vector<std::string> arguments = {"import",     Urdf(), "--out", (models_ / "arm").string(),
+                                          "--cover-mm", "30"};  // finer covers take longer
     arguments.insert(arguments.end(), GetParam().options.begin(), GetParam().options.end());
     const Finished finished = Sidestep(arguments);
     ASSERT_EQ(finished.exit_code, 0) << finished.err;
@@ -305,7 +306,8 @@ class ImportMjcf : public ::testing::Test {
 
 // Links stand where the model's bodies do, those that a joint moves at its anchor.
 TEST_F(ImportMjcf, KeepsTheKinematicsOfTheModel) {
-  const Finished finished = Sidestep(kClasses, {"--tip", "tcp", "--velocity", "2"});
+  const Finished finished =
+      Sidestep(kClasses, {"--tip", "tcp", "--velocity", "2", "--cover-mm", "30"});
   ASSERT_EQ(finished.exit_code, 0) << finished.err;
   EXPECT_THAT(finished.out, testing::HasSubstr("left out, for they stand beside the arm: table"));
   EXPECT_THAT(finished.out, testing::HasSubstr("<option>, <statistic>, <keyframe>"));
@@ -350,7 +352,8 @@ TEST_F(ImportMjcf, KeepsTheKinematicsOfTheModel) {
 }
 
 TEST_F(ImportMjcf, KeepsAFingerThatMimicsAnother) {
-  const Finished finished = Sidestep(kClasses, {"--tip", "left_finger", "--velocity", "2"});
+  const Finished finished =
+      Sidestep(kClasses, {"--tip", "left_finger", "--velocity", "2", "--cover-mm", "30"});
   ASSERT_EQ(finished.exit_code, 0) << finished.err;
   const robot::RobotModel robot = robot::RobotModel::Load(folder_.path().string(), "arm", Pose());
   EXPECT_EQ(robot.num_joints(), 5);

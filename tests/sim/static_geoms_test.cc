@@ -149,7 +149,7 @@ TEST_F(StaticGeomsTest, OfAFileThatIsNoneAreRefusedAtItsLine) {
   EXPECT_THAT(
       message(
           "<mujoco><asset>\n<mesh name='m' vertex='0 0 0 1 0 0 0 1 0 1 1 0'/></asset></mujoco>"),
-      HasSubstr(":2: vertex: lie in one plane"));
+      HasSubstr(":2: vertex: must span a solid, is flatter than 0.01 mm"));
   EXPECT_THAT(message("<mujoco>\n<include file='world.xml'/></mujoco>"),
               HasSubstr("they include each other"));
   EXPECT_THAT(message("<mujoco><worldbody><body><composite type='grid' count='1000 1000 1' "
