@@ -138,7 +138,7 @@ TEST_F(Scenes, RobotsAreListedWithTheirFolders) {
   EXPECT_THAT(last_.out, HasSubstr(kSource + "/examples/robot/pointer\n"));
   EXPECT_THAT(last_.out, HasSubstr("/models/panda\n"));
   Good({"list", "robots", "--names"});
-  EXPECT_EQ(last_.out, "panda\nwam\n");
+  EXPECT_EQ(last_.out, "panda\npanda:covered\nwam\n");
   // Of two with one name the first one counts.
   fs::copy(kSource + "/models/panda", Path("panda"), fs::copy_options::recursive);
   Good({"list", "robots", "--models", folder_.path()});
