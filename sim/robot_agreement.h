@@ -11,7 +11,7 @@ namespace sidestep::sim {
 /// A robot is described twice: by robot.yaml, from which is planned, and by its MJCF, which is
 /// simulated. Checks that both speak of the same arm: joints, their kinds, order and ranges; a
 /// plain torque motor for each, of the same limit; joints that mimic others, and are tied to them
-/// by an <equality>, the same; geoms that are solids or pictures; the
+/// by an `equality`, the same; geoms that are solids or pictures; the
 /// frame of each link where the body or site of its name is, after a row of a Denavit-Hartenberg
 /// table the site `dh<row>`, at random configurations; links that exist. What four written digits
 /// leave (0.1 mm, 1e-4 rad, 1e-4 of a torque) is no difference. Takes well under a millisecond.
