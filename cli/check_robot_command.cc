@@ -11,9 +11,11 @@
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/data_paths.h"
+#include "sidestep/cli/drafting.h"
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/robot_check.h"
+#include "sidestep/cli/scenario_options.h"
 #include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/import/sphere_cover.h"
@@ -30,6 +32,7 @@ namespace fs = std::filesystem;
 
 struct CheckRobotOptions {
   std::string robot, cover_file, json, out, command;
+  std::vector<std::string> models;
   std::optional<double> cover_mm;
   int spheres = 0;  // 0: not given
   double most_excess_percent = 35;
@@ -72,7 +75,7 @@ bool IsOfMount(const robot::RobotModel& robot, const sim::RigidLink& link) {
 // Covers the robot's solids anew and writes the spheres as a variant of it.
 void WriteCover(const CheckRobotOptions& options, const CheckedRobot& checked) {
   CheckCanWrite(options.cover_file);
-  import::CoverRequest request;
+  imports::CoverRequest request;
   request.cover_m = options.cover_mm.value_or(0) / 1e3;
   request.num_spheres = options.spheres;
   request.max_excess = options.most_excess_percent / 100;
@@ -82,11 +85,11 @@ void WriteCover(const CheckRobotOptions& options, const CheckedRobot& checked) {
     throw InputError("--spheres",
                      fmt::format("must be at least one a link with solids: {}", links.size()));
   }
-  std::vector<import::LinkSolids> solids;
+  std::vector<imports::LinkSolids> solids;
   for (const sim::RigidLink& link : links) solids.push_back(SolidsToCover(link));
-  const import::RobotCover cover = import::CoverLinks(solids, request);
+  const imports::RobotCover cover = imports::CoverLinks(solids, request);
 
-  import::Variant variant;
+  imports::Variant variant;
   variant.comment = {
       fmt::format("{} spheres that cover the solids of {}: no point of them is more than {:.3g} mm",
                   cover.num_spheres(), fs::path(checked.mjcf).filename().string(),
@@ -105,12 +108,12 @@ void WriteCover(const CheckRobotOptions& options, const CheckedRobot& checked) {
   }
   // Which pairs are worth while is told with the spheres in place.
   variant.self_collision.emplace();
-  WriteFile(options.cover_file, import::VariantText(variant));
+  WriteFile(options.cover_file, imports::VariantText(variant));
   const robot::RobotModel covered = robot::RobotModel::FromFile(options.cover_file, Pose());
   variant.self_collision = PairsToKeepApart(
       checked,
       sim::SurveySelfContacts(covered, *checked.model, options.configurations, options.seed));
-  WriteFile(options.cover_file, import::VariantText(variant));
+  WriteFile(options.cover_file, imports::VariantText(variant));
   Print("written          {}: {} spheres, at most {:.3g} mm left out\n\n", options.cover_file,
         cover.num_spheres(), 1e3 * cover.cover_m);
 }
@@ -137,7 +140,8 @@ int CheckRobot(const CheckRobotOptions& options) {
   if (!options.cover_file.empty() && options.cover_mm && !(*options.cover_mm > 0)) {
     throw InputError("--cover-mm", "must be > 0 to cover the robot anew");
   }
-  const DataPaths paths = FindDataPaths();
+  CheckIsNew(options.cover_file, "--write-cover");
+  const DataPaths paths = FindDataPaths(options.models);
   CheckedRobot checked = LoadRobot(options.robot, paths.all_models());
   std::optional<OutFolder> out;
   if (!options.out.empty()) out.emplace(options.out, std::vector<std::string>{kPicture});
@@ -176,6 +180,7 @@ void AddCheckRobotCommand(CommandLine& line) {
                    "Exit with 1 if solids stick out of the spheres by more than that [mm]; with "
                    "--write-cover, what the new ones may leave out")
       ->check(NumberFrom(0, 1e6));
+  AddModels(*check, options->models);
   check->add_option("--json", options->json, "The report as a file of JSON");
   check->add_option("--out", options->out,
                     "A folder for spheres.png, the solids and the spheres from four sides");

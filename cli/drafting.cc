@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 // A robot's folder from the folder of a scenario on, told as a path: with a /.
 std::string PathFrom(const std::string& out, const std::string& folder) {
   if (fs::path(folder).is_absolute()) return folder;
-  const fs::path from = fs::absolute(out.empty() ? "." : fs::path(out).parent_path());
+  const fs::path from = out.empty() ? fs::current_path() : fs::absolute(out).parent_path();
   std::string path =
       fs::absolute(folder).lexically_normal().lexically_relative(from.lexically_normal()).string();
   if (path.find('/') == std::string::npos) path = "./" + path;
@@ -37,18 +37,17 @@ Draft BeginDraft(const std::string& robot, const Pose& X_WB, const std::string& 
                  const DataPaths& paths) {
   const ModelFolders models = paths.all_models();
   const bool is_path = robot.find('/') != std::string::npos;
-  const std::string own = is_path ? robot : robot::ModelFolder(robot);
-  const std::string variant = is_path ? "" : robot::ModelVariant(robot);
+  const std::string own = robot::ModelFolder(robot), variant = robot::ModelVariant(robot);
   const std::vector<std::string> known = robot::RobotModel::ListNames(models);
   if (!is_path && std::find(known.begin(), known.end(), own) == known.end()) {
     throw InputError("--robot", "must be one of " + Joined(known) + " (of " +
                                     Joined(models.folders()) + "), or a path with a /, is '" +
                                     robot + "'");
   }
-  fs::path folder = is_path ? fs::path(robot).lexically_normal() : fs::path(*models.Find(own));
+  fs::path folder = is_path ? fs::path(own).lexically_normal() : fs::path(*models.Find(own));
   if (!folder.has_filename()) folder = folder.parent_path();
   robot::RobotModel model = robot::RobotModel::FromFolder(folder.string(), variant, X_WB);
-  Draft draft = {import::DraftScenario(model), std::move(model)};
+  Draft draft = {imports::DraftScenario(model), std::move(model)};
   draft.scenario.file = out;
   draft.scenario.robot_variant = variant;
   draft.scenario.name =
@@ -69,24 +68,24 @@ double FootHeight(const Draft& draft, const DataPaths& paths) {
   return std::isfinite(height_m) ? height_m : -std::numeric_limits<double>::infinity();
 }
 
-import::IsGood TouchesNothing(const Draft& draft, const DataPaths& paths){return [
-  &draft, models = paths.all_models()
-](const Eigen::VectorXd& q){scenarios::Scenario scenario = draft.scenario;
-scenario.moving_obstacles.clear();
-scenario.q_start = q;
-sim::Simulation simulation(scenario, draft.robot, models);
-for (const TruthSample& sample : simulation.truth().TakeSamples()) {
-  if (sample.in_contact || sample.clearance_m < 0) return false;
-}
-return true;
-};  // namespace sidestep::cli
+imports::IsGood TouchesNothing(const Draft& draft, const DataPaths& paths) {
+  return [&draft, models = paths.all_models()](const Eigen::VectorXd& q) {
+    scenarios::Scenario scenario = draft.scenario;
+    scenario.moving_obstacles.clear();
+    scenario.q_start = q;
+    sim::Simulation simulation(scenario, draft.robot, models);
+    for (const TruthSample& sample : simulation.truth().TakeSamples()) {
+      if (sample.in_contact || sample.clearance_m < 0) return false;
+    }
+    return true;
+  };
 }
 
-void CheckIsNew(const std::string& out) {
+void CheckIsNew(const std::string& out, const std::string& option) {
   if (out.empty()) return;
   std::error_code error;
   if (fs::is_regular_file(out, error)) {
-    throw InputError("--out", "'" + out + "' is there already; choose another name or remove it");
+    throw InputError(option, "'" + out + "' is there already; choose another name or remove it");
   }
   CheckCanWrite(out);
 }

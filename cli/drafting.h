@@ -27,10 +27,10 @@ Draft BeginDraft(const std::string& robot, const Pose& X_WB, const std::string& 
 double FootHeight(const Draft& draft, const DataPaths& paths);
 
 /// Whether the arm touches nothing at a configuration, itself neither, as the simulator judges it.
-import::IsGood TouchesNothing(const Draft& draft, const DataPaths& paths);
+imports::IsGood TouchesNothing(const Draft& draft, const DataPaths& paths);
 
-/// Refuses a file that is there: it may be a person's work. @throws InputError.
-void CheckIsNew(const std::string& out);
+/// Refuses a file that is there: it may be a person's work. @throws InputError, of `option`.
+void CheckIsNew(const std::string& out, const std::string& option = "--out");
 
 /// How to run the scenario, for its head: `sidestep run FILE --models DIR`.
 std::string HowToRun(const std::string& out, const std::vector<std::string>& models);

@@ -113,7 +113,8 @@ void AddImportCommand(CommandLine& line) {
       ->check(NumberFrom(0.0, 10.0));
   command->footer(
       "Meshes become convex hulls. What was made of the file, and what was left out, is told.\n"
-      "Then: sidestep run SCENARIO.yaml, with `robot: {model: NAME}` (docs/robots.md).");
+      "Then: sidestep check-robot FOLDER, and sidestep new-scenario --robot FOLDER --out "
+      "FILE.yaml\n(docs/robots.md).");
   command->callback([&line, options] { line.exit_code = Import(*options); });
 }
 

@@ -5,6 +5,7 @@
 
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/out_folder.h"
+#include "sidestep/cli/shell_quote.h"
 #include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
@@ -35,28 +36,31 @@ std::string NameOf(const std::string& out) {
   fs::path folder = fs::path(out).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();
   const std::string name = folder.filename().string();
+  if (name.find(':') != std::string::npos) {
+    throw InputError("--out", "must be a name without a colon, is '" + out + "'");
+  }
   if (name.empty() || name == "." || name == "..") {
     throw InputError("--out", "must be a folder whose name is the robot's, is '" + out + "'");
   }
   return name;
 }
 
-robot::RobotTree ReadTree(const std::string& file, const import::ArmChoices& choices) {
-  if (fs::path(file).extension() != ".xml") return import::ReadUrdfTree(file, choices);
+robot::RobotTree ReadTree(const std::string& file, const imports::ArmChoices& choices) {
+  if (fs::path(file).extension() != ".xml") return imports::ReadUrdfTree(file, choices);
   const auto read = [&] { return sim::ReadMjcfTree(file, choices.visuals_as_collisions); };
   // MuJoCo is no safer than others with damaged files: once where that does no harm.
   try {
     const auto try_it = [&] { return read().file; };
-    static_cast<void>(import::RunIsolated(try_it));
+    static_cast<void>(imports::RunIsolated(try_it));
   } catch (const std::runtime_error& error) {
-    throw import::AsInputError(file, error);
+    throw imports::AsInputError(file, error);
   }
   robot::RobotTree tree = read();
   FinishHulls(choices, &tree);
   return tree;
 }
 
-std::string Spelled(const robot::ArmDescription& arm, const import::LinkPairs& pairs) {
+std::string Spelled(const robot::ArmDescription& arm, const imports::LinkPairs& pairs) {
   return Joined(pairs, ", ", [&arm](const robot::LinkPair& pair) {
     return arm.LinkOf(pair.first).name + " and " + arm.LinkOf(pair.second).name;
   });
@@ -68,7 +72,7 @@ std::vector<robot::CollisionCapsule> CapsulesOf(const robot::ArmDescription& arm
   for (int link = -1; link < static_cast<int>(arm.joints.size()); ++link) {
     const std::vector<robot::LinkSolid>& solids = arm.LinkOf(link).solids;
     if (solids.empty()) continue;
-    capsules.push_back(import::CapsuleAround(solids));
+    capsules.push_back(imports::CapsuleAround(solids));
     capsules.back().link = link;
   }
   if (capsules.size() > robot::RobotModel::kMaxCapsules) capsules.clear();
@@ -86,64 +90,74 @@ void SetArmature(const Eigen::VectorXd& armature, robot::ArmDescription* arm) {
 }
 
 // All of robot.yaml that is not the arm itself. Says what a person should know of it.
-import::RobotDetails DetailsOf(const robot::ArmDescription& arm, const sim::ArmSurvey& survey,
-                               const import::SphereRequest& spheres){import::RobotDetails details;
-details.spheres = import::CoverArm(arm, spheres);
-details.capsules = CapsulesOf(arm);
-if (details.capsules.empty()) {
-  Print("more than {} links can touch: no capsules are written, by which it would be supervised\n",
+imports::RobotDetails DetailsOf(const robot::ArmDescription& arm, const sim::ArmSurvey& survey,
+                                const imports::SphereRequest& spheres) {
+  imports::RobotDetails details;
+  details.spheres = imports::CoverArm(arm, spheres);
+  details.capsules = CapsulesOf(arm);
+  if (details.capsules.empty()) {
+    Print(
+        "more than {} links can touch: no capsules are written, by which it would be supervised\n",
         robot::RobotModel::kMaxCapsules);
+  }
+  const std::vector<int> mount = imports::MountSpheres(arm, details.spheres);
+  details.home = imports::ChooseHome(arm, details.spheres, mount, survey.sometimes, survey.free);
+  details.mount_spheres = imports::WithSpheresBelow(arm, details.spheres, mount, details.home);
+  if (const std::size_t more = details.mount_spheres.size() - mount.size(); more > 0) {
+    Print("{} spheres of what moves reach below the base wherever it was put: they are mounted\n",
+          more);
+  }
+  details.self_collision =
+      imports::SeparablePairs(arm, details.spheres, survey.sometimes, details.home);
+  details.stiffness = survey.stiffness;
+  details.damping = survey.damping;
+  details.bandwidth_rad_s = survey.bandwidth_rad_s;
+  return details;
 }
-const std::vector<int> mount = import::MountSpheres(arm, details.spheres);
-details.home = import::ChooseHome(arm, details.spheres, mount, survey.sometimes, survey.free);
-details.mount_spheres = import::WithSpheresBelow(arm, details.spheres, mount, details.home);
-if (const std::size_t more = details.mount_spheres.size() - mount.size(); more > 0) {
-  Print("{} spheres of what moves reach below the base wherever it was put: they are mounted\n",
-        more);
-}
-details.self_collision =
-    import::SeparablePairs(arm, details.spheres, survey.sometimes, details.home);
-details.stiffness = survey.stiffness;
-details.damping = survey.damping;
-details.bandwidth_rad_s = survey.bandwidth_rad_s;
-return details;
-}  // namespace
 
 // The two files, held to each other.
 robot::RobotModel WriteRobot(const std::string& out, const robot::ArmDescription& arm,
-                             const import::RobotDetails& details,
-                             const import::LinkPairs& without_contact) {
+                             const imports::RobotDetails& details,
+                             const imports::LinkPairs& without_contact) {
   const std::string xml_name = arm.name + ".xml";
   const OutFolder folder(out, {"robot.yaml", xml_name});
   const std::string xml_path = folder.path() + "/" + xml_name;
   const std::string yaml_path = folder.path() + "/robot.yaml";
-  WriteFile(xml_path, import::MjcfText(arm, without_contact));
-  WriteFile(yaml_path, import::RobotYamlText(arm, details));
+  WriteFile(xml_path, imports::MjcfText(arm, without_contact));
+  WriteFile(yaml_path, imports::RobotYamlText(arm, details));
   robot::RobotModel robot = robot::RobotModel::FromFile(yaml_path, Pose());
   sim::CheckAgreement(robot, *sim::LoadArmFile(xml_path), xml_path);
   return robot;
 }
 
-}  // namespace sidestep::cli
+}  // namespace
 
 void ImportRobot(const RobotImport& request) {
-  import::ArmChoices choices = request.choices;
+  imports::ArmChoices choices = request.choices;
   choices.name = NameOf(request.out);
+  const std::string xml_name = choices.name + ".xml";
   std::error_code error;
-  if (!request.overwrite && fs::exists(fs::path(request.out) / "robot.yaml", error)) {
-    throw InputError("--out",
-                     "'" + request.out + "' holds a robot already; --overwrite replaces it");
+  for (const std::string& name : {std::string("robot.yaml"), xml_name}) {
+    const fs::path path = fs::path(request.out) / name;
+    if (fs::equivalent(path, request.file, error)) {
+      throw InputError("--out", "'" + path.string() + "' would replace what is imported");
+    }
+    if (!request.overwrite && fs::exists(path, error)) {
+      throw InputError("--out",
+                       "'" + path.string() + "' is there already; --overwrite replaces it");
+    }
   }
-  import::ImportedArm imported = import::ArmOfTree(ReadTree(request.file, choices), choices);
+  const OutFolder folder(request.out, {"robot.yaml", xml_name});  // before the work is done
+  imports::ImportedArm imported = imports::ArmOfTree(ReadTree(request.file, choices), choices);
   robot::ArmDescription& arm = imported.arm;
   for (const std::string& note : imported.notes) Print("{}\n", note);
 
-  import::LinkPairs without_contact = import::PairsWithoutContact(arm, {});
+  imports::LinkPairs without_contact = imports::PairsWithoutContact(arm, {});
   const sim::MujocoModelPtr model =
-      sim::LoadArmText(import::MjcfText(arm, without_contact), request.file + ": its MJCF");
+      sim::LoadArmText(imports::MjcfText(arm, without_contact), request.file + ": its MJCF");
   sim::SurveySettings settings;
-  settings.configurations = import::SampleConfigurations(arm, kConfigurations);
-  settings.candidates = import::HomeCandidates(arm);
+  settings.configurations = imports::SampleConfigurations(arm, kConfigurations);
+  settings.candidates = imports::HomeCandidates(arm);
   settings.bandwidth_rad_s = request.bandwidth_rad_s;
   settings.armature_share = request.armature_share;
   const sim::ArmSurvey survey = sim::SurveyArm(*model, arm, settings);
@@ -153,7 +167,7 @@ void ImportRobot(const RobotImport& request) {
   }
   if (!survey.always.empty()) {
     Print("touch each other nearly always, which is left out: {}\n", Spelled(arm, survey.always));
-    without_contact = import::PairsWithoutContact(arm, survey.always);
+    without_contact = imports::PairsWithoutContact(arm, survey.always);
   }
   SetArmature(survey.armature, &arm);
   const robot::RobotModel robot =
@@ -164,6 +178,9 @@ void ImportRobot(const RobotImport& request) {
       choices.name, robot.num_joints(), arm.links.size(), robot.num_spheres(),
       robot.self_collision().size(), survey.sometimes.size(), kConfigurations);
   Print("written  {0}/robot.yaml and {0}/{1}.xml\n", request.out, choices.name);
+  const bool is_path = request.out.find('/') != std::string::npos;
+  Print("next     sidestep new-scenario --robot {}{} --out {}.yaml\n", is_path ? "" : "./",
+        ShellQuoted(request.out), ShellQuoted(choices.name));
 }
 
 }  // namespace sidestep::cli

@@ -11,9 +11,9 @@ namespace sidestep::cli {
 struct RobotImport {
   std::string file;  ///< URDF, or MJCF if its name ends in .xml
   std::string out;   ///< the robot's folder
-  import::ArmChoices choices;
+  imports::ArmChoices choices;
   bool overwrite = false;  ///< a robot that is there
-  import::SphereRequest spheres;
+  imports::SphereRequest spheres;
   double bandwidth_rad_s = 50;
   double armature_share = 0.1;
 };

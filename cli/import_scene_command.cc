@@ -36,21 +36,21 @@ struct ImportOptions {
   std::string command;  // as it was typed
 };
 
-import::ImportedScene ReadMjcfScene(const std::string& path){
-    sim::StaticGeoms geoms = sim::ReadStaticGeoms(path);
-import::ImportedScene scene;
-scene.floor_m = geoms.floor_m;
-scene.left_out = std::move(geoms.left_out);
-std::vector<std::string> taken = {"floor", "self", "world"};
-for (sim::StaticGeom& geom : geoms.solids) {
-  if (std::holds_alternative<ConvexMesh>(geom.placed.shape)) {
-    scene.changed.push_back("'" + geom.name + "': the convex hull of its mesh");
+imports::ImportedScene ReadMjcfScene(const std::string& path) {
+  sim::StaticGeoms geoms = sim::ReadStaticGeoms(path);
+  imports::ImportedScene scene;
+  scene.floor_m = geoms.floor_m;
+  scene.left_out = std::move(geoms.left_out);
+  std::vector<std::string> taken = {"floor", "self", "world"};
+  for (sim::StaticGeom& geom : geoms.solids) {
+    if (std::holds_alternative<ConvexMesh>(geom.placed.shape)) {
+      scene.changed.push_back("'" + geom.name + "': the convex hull of its mesh");
+    }
+    scene.obstacles.push_back(
+        {imports::FreeName(geom.name, taken), geom.placed.X_WO, std::move(geom.placed.shape)});
   }
-  scene.obstacles.push_back(
-      {import::FreeName(geom.name, taken), geom.placed.X_WO, std::move(geom.placed.shape)});
+  return scene;
 }
-return scene;
-}  // namespace
 
 // Names of files may hold line ends.
 std::string OneLine(std::string text) {
@@ -59,7 +59,7 @@ std::string OneLine(std::string text) {
 }
 
 // Where a request has what becomes the task.
-std::map<std::string, int> LinesOf(const import::ImportedRequest& request) {
+std::map<std::string, int> LinesOf(const imports::ImportedRequest& request) {
   std::map<std::string, int> lines;
   if (request.start) lines["task.start"] = request.start->line;
   if (request.goal) lines["task.goal"] = request.goal->line;
@@ -68,7 +68,7 @@ std::map<std::string, int> LinesOf(const import::ImportedRequest& request) {
 }
 
 // Takes things out by their names in the scenario, such as what the hand is to hold at the goal.
-void LeaveOut(const std::vector<std::string>& names, import::ImportedScene& scene) {
+void LeaveOut(const std::vector<std::string>& names, imports::ImportedScene& scene) {
   for (const std::string& name : names) {
     const auto is_it = [&](const scenarios::StaticObstacle& thing) { return thing.name == name; };
     if (std::erase_if(scene.obstacles, is_it) == 0) {
@@ -80,6 +80,9 @@ void LeaveOut(const std::vector<std::string>& names, import::ImportedScene& scen
 
 Pose BaseOf(const ImportOptions& options) {
   if (options.base.empty()) return Pose();
+  for (const double number : options.base) {
+    if (!(std::abs(number) <= 1e6)) throw InputError("--base", "must be numbers within 1000 km");
+  }
   const double yaw = options.base.size() > 3 ? options.base[3] : 0;
   return Pose::FromRollPitchYaw({0, 0, yaw}, {options.base[0], options.base[1], options.base[2]});
 }
@@ -90,28 +93,28 @@ int ImportScene(const ImportOptions& options) {
   Draft draft = BeginDraft(options.robot, BaseOf(options), options.out, paths);
   scenarios::Scenario& scenario = draft.scenario;
   const bool is_mjcf = std::filesystem::path(options.file).extension() == ".xml";
-  import::ImportedScene scene =
-      is_mjcf ? ReadMjcfScene(options.file) : import::ReadMoveItScene(options.file);
+  imports::ImportedScene scene =
+      is_mjcf ? ReadMjcfScene(options.file) : imports::ReadMoveItScene(options.file);
   LeaveOut(options.leave_out, scene);
   scenario.description =
       "Imported from " + EscapeInvalidUtf8(std::filesystem::path(options.file).filename().string());
   scenario.seed = static_cast<std::uint64_t>(options.seed);
-  import::PutInto(scene, draft.robot, scenario);
+  imports::PutInto(scene, draft.robot, scenario);
   RandomStream random(scenario.seed, "task");
   std::map<std::string, int> lines;
   if (options.request.empty()) {
-    if (!import::ChooseTask(scenario, draft.robot, random, TouchesNothing(draft, paths))) {
+    if (!imports::ChooseTask(scenario, draft.robot, random, TouchesNothing(draft, paths))) {
       throw InputError(options.file, "no start and goal were found at which '" + options.robot +
                                          "' touches nothing there; try another --seed or --base");
     }
   } else {
-    const import::ImportedRequest request = import::ReadMoveItRequest(options.request);
-    for (const std::string& line : import::PutInto(request, draft.robot, random, scenario)) {
+    const imports::ImportedRequest request = imports::ReadMoveItRequest(options.request);
+    for (const std::string& line : imports::PutInto(request, draft.robot, random, scenario)) {
       scene.left_out.push_back(line);
     }
     lines = LinesOf(request);
   }
-  import::FitHorizon(scenario, draft.robot);
+  imports::FitHorizon(scenario, draft.robot);
   scenarios::Scenario judged = scenario;  // as `sidestep run` will, with complaints of the request
   judged.file = options.request.empty() ? options.file : options.request;
   judged.lines = std::move(lines);
@@ -128,12 +131,12 @@ int ImportScene(const ImportOptions& options) {
     head.push_back("Left out: " + OneLine(line));
     PrintError("left out: {}\n", OneLine(line));
   }
-  WriteFile(options.out, import::CommentedYaml(scenario, head));
+  WriteFile(options.out, imports::CommentedYaml(scenario, head));
   Print("written {}: {} things\n", options.out, scenario.static_obstacles.size());
   return 0;
 }
 
-}  // namespace sidestep::cli
+}  // namespace
 
 void AddImportSceneCommand(CommandLine& line) {
   auto options = std::make_shared<ImportOptions>();

@@ -37,17 +37,17 @@ int NewScenario(const NewScenarioOptions& options) {
   scenario.floor_m =
       std::isfinite(foot_m) ? std::round(1e4 * foot_m) / 1e4 : scenario.grid.first_center_m.z();
   RandomStream random(scenario.seed, "task");
-  if (!import::ChooseTask(scenario, draft.robot, random, TouchesNothing(draft, paths))) {
+  if (!imports::ChooseTask(scenario, draft.robot, random, TouchesNothing(draft, paths))) {
     throw InputError("--robot", "no start and goal were found at which '" + options.robot +
                                     "' touches nothing; try another --seed");
   }
-  import::FitHorizon(scenario, draft.robot);
-  import::AddCrossingBall(scenario, draft.robot);
+  imports::FitHorizon(scenario, draft.robot);
+  imports::AddCrossingBall(scenario, draft.robot);
   scenarios::Scenario judged = scenario;  // as `sidestep run` will
   bench::ResolvePlanner(judged);
   bench::ResolveTask(judged, draft.robot);
 
-  const std::string text = import::CommentedYaml(
+  const std::string text = imports::CommentedYaml(
       scenario, {"Made by `" + options.command + "`. It runs as it is:", "",
                  "    " + HowToRun(options.out, options.models), "",
                  "Change what you like; docs/scenario.md has every key. The robot's named",

@@ -27,21 +27,22 @@ using Json = nlohmann::ordered_json;
 constexpr int kFrames = 1000;
 constexpr double kPrecision_m = 1e-5;
 
-import::TriangleMesh MeshOf(const sim::ConvexHull& hull){import::TriangleMesh mesh;
-mesh.vertices.resize(3, std::ssize(hull.vertices));
-mesh.triangles.resize(3, std::ssize(hull.faces));
-for (std::size_t i = 0; i < hull.vertices.size(); ++i) {
-  mesh.vertices.col(static_cast<Eigen::Index>(i)) = hull.vertices[i];
+imports::TriangleMesh MeshOf(const sim::ConvexHull& hull) {
+  imports::TriangleMesh mesh;
+  mesh.vertices.resize(3, std::ssize(hull.vertices));
+  mesh.triangles.resize(3, std::ssize(hull.faces));
+  for (std::size_t i = 0; i < hull.vertices.size(); ++i) {
+    mesh.vertices.col(static_cast<Eigen::Index>(i)) = hull.vertices[i];
+  }
+  for (std::size_t i = 0; i < hull.faces.size(); ++i) {
+    mesh.triangles.col(static_cast<Eigen::Index>(i)) =
+        Eigen::Map<const Eigen::Vector3i>(hull.faces[i].data());
+  }
+  return mesh;
 }
-for (std::size_t i = 0; i < hull.faces.size(); ++i) {
-  mesh.triangles.col(static_cast<Eigen::Index>(i)) =
-      Eigen::Map<const Eigen::Vector3i>(hull.faces[i].data());
-}
-return mesh;
-}  // namespace
 
-std::vector<import::CoverSphere> SpheresOf(const sim::RigidLink& link) {
-  std::vector<import::CoverSphere> spheres;
+std::vector<imports::CoverSphere> SpheresOf(const sim::RigidLink& link) {
+  std::vector<imports::CoverSphere> spheres;
   for (const robot::CollisionSphere& sphere : link.spheres) {
     spheres.push_back({sphere.p_LS, sphere.radius_m});
   }
@@ -126,27 +127,30 @@ std::string PairsText(const std::vector<JudgedPair>& pairs, Standing standing) {
 std::string Percent(double share) { return FiniteText("{:.1f}", 100 * share); }
 std::string Millimetres(double length_m) { return FiniteText("{:.2f}", 1e3 * length_m, "all"); }
 
-double ExcessOf(const import::CoverCheck& cover) { return cover.sphere_m3 / cover.solid_m3 - 1; }
+double ExcessOf(const imports::CoverCheck& cover) { return cover.sphere_m3 / cover.solid_m3 - 1; }
 
 Json JsonNumber(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-}  // namespace sidestep::cli
+}  // namespace
 
-import::LinkSolids SolidsToCover(const sim::RigidLink& link){
-    import::LinkSolids solids{link.shapes, {}};
-for (std::size_t i = 0; i < link.hulls.size(); ++i) {
-  solids.meshes.push_back({"a mesh of body '" + link.hull_body[i] + "'", MeshOf(link.hulls[i])});
-}
-return solids;
+imports::LinkSolids SolidsToCover(const sim::RigidLink& link) {
+  imports::LinkSolids solids{link.shapes, {}};
+  for (std::size_t i = 0; i < link.hulls.size(); ++i) {
+    solids.meshes.push_back({"a mesh of body '" + link.hull_body[i] + "'", MeshOf(link.hulls[i])});
+  }
+  return solids;
 }
 
 CheckedRobot LoadRobot(const std::string& name, const ModelFolders& models) {
   const bool is_path = name.find('/') != std::string::npos || name.ends_with(".yaml");
-  std::error_code error;
-  std::string file = fs::is_directory(name, error) ? name + "/robot.yaml" : name;
+  std::string file = name;
+  if (!name.ends_with(".yaml")) {
+    const std::string own = robot::ModelFolder(name);
+    file = (is_path ? own : models.Find(own).value_or(own)) + "/" +
+           robot::DescriptionFile(robot::ModelVariant(name));
+  }
   robot::RobotModel robot = is_path ? robot::RobotModel::FromFile(file, Pose())
                                     : robot::RobotModel::Load(models, name, Pose());
-  file = robot.file();
   const fs::path folder = fs::path(robot.file()).parent_path();
   std::string mjcf = (folder / (robot.name() + ".xml")).string();
   sim::MujocoModelPtr model = sim::LoadArmFile(mjcf);

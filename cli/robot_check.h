@@ -30,8 +30,8 @@ CheckedRobot LoadRobot(const std::string& name, const ModelFolders& models);
 struct LinkReport {
   sim::RigidLink link;
   std::string name;
-  import::CoverCheck cover;  ///< of a link with solids
-  std::string body;          ///< of the MJCF, that sticks out furthest
+  imports::CoverCheck cover;  ///< of a link with solids
+  std::string body;           ///< of the MJCF, that sticks out furthest
 };
 
 struct TouchingPose {
@@ -60,6 +60,6 @@ std::string ReportText(const CheckedRobot& checked, const RobotReport& report);
 std::string ReportJson(const CheckedRobot& checked, const RobotReport& report);
 
 /// The solids of a link as covers want them.
-import::LinkSolids SolidsToCover(const sim::RigidLink& link);
+imports::LinkSolids SolidsToCover(const sim::RigidLink& link);
 
 }  // namespace sidestep::cli

@@ -110,16 +110,21 @@ void CheckRobotIsThere(const scenarios::Scenario& scenario, const ModelFolders& 
   const std::vector<std::string> known = robot::RobotModel::ListNames(models);
   if (scenario.robot_path.empty() &&
       std::find(known.begin(), known.end(), scenario.robot) == known.end()) {
-    throw scenarios::WrongValue(scenario, "robot.model",
-                                "must be one of " + Joined(known) + " (of " +
-                                    Joined(models.folders()) + "), or a path with a /, is '" +
-                                    scenario.robot + "'");
+    throw scenarios::WrongValue(
+        scenario, "robot.model",
+        "must be one of " + Joined(known) + " (of " + Joined(models.folders()) +
+            "; --models DIR adds others), or a path with a /, is '" + scenario.robot + "'");
   }
   const std::string file =
       RobotFolder(scenario, models) + "/" + robot::DescriptionFile(scenario.robot_variant);
   std::error_code error;
   if (std::filesystem::exists(file, error)) return;
-  throw scenarios::WrongValue(scenario, "robot.model", "there is no " + file);
+  const std::vector<std::string> variants = robot::VariantNames(RobotFolder(scenario, models));
+  throw scenarios::WrongValue(scenario, "robot.model",
+                              "there is no " + file +
+                                  (scenario.robot_variant.empty() || variants.empty()
+                                       ? ""
+                                       : " (known: " + Joined(variants) + ")"));
 }
 
 Problem AddRobot(scenarios::Scenario scenario, const DataPaths& paths) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// What the file of a robot leaves open.
 struct ArmChoices {
@@ -22,4 +22,4 @@ struct ArmChoices {
   std::optional<double> ramp_s;  ///< in which a joint comes to its greatest speed
 };
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -11,7 +11,7 @@
 #include "sidestep/import/convex_hull.h"
 #include "sidestep/import/joint_choice.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -300,4 +300,4 @@ ImportedArm ArmOfTree(const robot::RobotTree& tree, const ArmChoices& choices) {
   return Maker(tree, choices).Make();
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

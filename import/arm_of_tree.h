@@ -7,7 +7,7 @@
 #include "sidestep/robot/arm_description.h"
 #include "sidestep/robot/robot_tree.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// An arm, and what a person should know of how it came about.
 struct ImportedArm {
@@ -21,4 +21,4 @@ struct ImportedArm {
 /// @throws InputError FILE:LINE: KEY: WHY, or --flag: WHY.
 ImportedArm ArmOfTree(const robot::RobotTree& tree, const ArmChoices& choices);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

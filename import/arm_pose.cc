@@ -6,7 +6,7 @@
 
 #include "sidestep/core/random.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 std::vector<Pose> LinkPosesAt(const robot::ArmDescription& arm, const Eigen::VectorXd& q) {
   std::vector<Pose> poses;
@@ -58,4 +58,4 @@ Eigen::Vector3d RollPitchYawOf(const Eigen::Matrix3d& R) {
   return {std::atan2(-S(1, 2), S(1, 1)), std::atan2(-S(2, 0), S(0, 0)), yaw};
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -6,7 +6,7 @@
 #include "sidestep/core/pose.h"
 #include "sidestep/robot/arm_description.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// X_BL of each joint's link, in the frame of the base.
 std::vector<Pose> LinkPosesAt(const robot::ArmDescription& arm, const Eigen::VectorXd& q);
@@ -19,4 +19,4 @@ std::vector<Eigen::VectorXd> SampleConfigurations(const robot::ArmDescription& a
 /// whatever the pitch.
 Eigen::Vector3d RollPitchYawOf(const Eigen::Matrix3d& R);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -8,7 +8,7 @@
 
 #include "sidestep/import/solid_points.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 using Eigen::Matrix3d;
@@ -97,4 +97,4 @@ robot::CollisionCapsule CapsuleAround(const std::vector<robot::LinkSolid>& solid
   return best;
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

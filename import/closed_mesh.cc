@@ -9,7 +9,7 @@
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/number_text.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 std::string PlaceText(const Eigen::Vector3d& p) {
@@ -79,4 +79,4 @@ void CheckClosed(const NamedMesh& solid) {
   }
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

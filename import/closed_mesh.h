@@ -2,7 +2,7 @@
 
 #include "sidestep/import/link_solids.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// Checks that a mesh bounds a solid: finite, with triangles, each edge between two of them that
 /// run along it in opposite ways (corners at the same place count as one, as files of loose
@@ -13,4 +13,4 @@ void CheckClosed(const NamedMesh& solid);
 /// For each vertex, the first one at exactly the same place.
 std::vector<int> FirstOfEachPlace(const TriangleMesh& mesh);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

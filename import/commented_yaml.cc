@@ -7,7 +7,7 @@
 
 #include "sidestep/core/utf8.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 // By the key's path; lists' items have the path of the list.
@@ -101,4 +101,4 @@ std::string CommentedYaml(const scenarios::Scenario& scenario,
   return text;
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 using Eigen::Index;
@@ -158,4 +158,4 @@ SimplerHull Simplify(const HullSolid& hull, int max_vertices) {
   }
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

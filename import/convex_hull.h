@@ -5,7 +5,7 @@
 
 #include "sidestep/robot/arm_description.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// The convex hull of points [m], shape 3 x N, finite. None if they span no solid: fewer than four,
 /// or all within `kFlat_m` of a plane.
@@ -26,4 +26,4 @@ struct SimplerHull {
 /// directions, then always the one that stands out farthest of what there is.
 SimplerHull Simplify(const robot::HullSolid& hull, int max_vertices);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -14,7 +14,7 @@
 #include "sidestep/import/uncovered.h"
 #include "sidestep/sdf/map/distance_transform.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -178,4 +178,4 @@ class Search {
 
 CoverFront FindCovers(const CoverTask& task) { return Search(task).Run(); }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -5,7 +5,7 @@
 #include "sidestep/import/cover_sphere.h"
 #include "sidestep/import/triangle_mesh.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// A cover of one link.
 struct SphereCover {
@@ -30,4 +30,4 @@ struct CoverTask {
 /// each is also split in two. Always finds at least one cover.
 CoverFront FindCovers(const CoverTask& task);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

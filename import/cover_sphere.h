@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// A sphere in the frame of a link.
 struct CoverSphere {
@@ -10,4 +10,4 @@ struct CoverSphere {
   double radius_m = 0;
 };
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -13,7 +13,7 @@
 #include "sidestep/import/free_space.h"
 #include "sidestep/import/inverse_kinematics.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 using Eigen::Vector3d;
@@ -250,4 +250,4 @@ void AddCrossingBall(scenarios::Scenario& scenario, const robot::RobotModel& rob
   scenario.moving_obstacles.push_back(ball);
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

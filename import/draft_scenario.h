@@ -8,7 +8,7 @@
 #include "sidestep/robot/robot_model.h"
 #include "sidestep/scenarios/scenario.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// A scenario without a task, as one begins: the robot, how it plans and sees, and a workspace that
 /// holds all that the arm can reach.
@@ -43,4 +43,4 @@ bool ChooseGoal(scenarios::Scenario& scenario, const robot::RobotModel& robot, R
 /// comes near neither the start at first nor the goal afterwards.
 void AddCrossingBall(scenarios::Scenario& scenario, const robot::RobotModel& robot);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

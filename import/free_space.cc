@@ -5,7 +5,7 @@
 #include <limits>
 #include <set>
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 StaticSolids SolidsOf(const scenarios::Scenario& scenario, bool with_mount) {
@@ -80,4 +80,4 @@ double FreeSpace::Clearance(const Eigen::VectorXd& q) const {
   return least_m;
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -8,7 +8,7 @@
 #include "sidestep/scenarios/scenario.h"
 #include "sidestep/sdf/shape_field.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// Where a robot can be among what stands still in a scenario: by its collision spheres and the
 /// exact distances to the shapes.
@@ -30,4 +30,4 @@ class FreeSpace {
   std::vector<std::pair<int, int>> kept_apart_;  ///< pairs of spheres
 };
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -3,7 +3,7 @@
 #include <bit>
 #include <cstdint>
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 std::vector<CoverSphere> GreedyCover(const CoverCandidates& candidates,
                                      const Eigen::Matrix3Xd& points_m, double cover_m, double out_m,
@@ -48,4 +48,4 @@ std::vector<CoverSphere> GreedyCover(const CoverCandidates& candidates,
   return chosen;
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -5,7 +5,7 @@
 
 #include "sidestep/import/cover_sphere.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// Balls that a cover may be chosen from: their centres, and how far each is within the solid.
 struct CoverCandidates {
@@ -20,4 +20,4 @@ std::vector<CoverSphere> GreedyCover(const CoverCandidates& candidates,
                                      const Eigen::Matrix3Xd& points_m, double cover_m, double out_m,
                                      int most);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

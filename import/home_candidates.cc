@@ -6,7 +6,7 @@
 #include "sidestep/import/arm_pose.h"
 #include "sidestep/import/solid_points.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 constexpr int kRandom = 300;
@@ -56,4 +56,4 @@ std::vector<Eigen::VectorXd> HomeCandidates(const robot::ArmDescription& arm) {
   return sorted;
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

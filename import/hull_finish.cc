@@ -5,7 +5,7 @@
 #include "sidestep/core/input_error.h"
 #include "sidestep/import/convex_hull.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 std::optional<robot::HullSolid> FinishedHull(const Eigen::Matrix3Xd& points, int max_vertices,
                                              std::string* note) {
@@ -39,4 +39,4 @@ void FinishHulls(const ArmChoices& choices, robot::RobotTree* tree) {
   }
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -3,7 +3,7 @@
 #include "sidestep/import/arm_choices.h"
 #include "sidestep/robot/robot_tree.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// The convex hull of points, of at most `max_vertices` corners, each to the micrometre as it is
 /// written; none if they span no solid.
@@ -14,4 +14,4 @@ std::optional<robot::HullSolid> FinishedHull(const Eigen::Matrix3Xd& points, int
 /// Makes the hulls of a tree whose meshes hold vertices alone. @throws InputError.
 void FinishHulls(const ArmChoices& choices, robot::RobotTree* tree);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -4,7 +4,7 @@
 
 #include "sidestep/core/number_text.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 constexpr double kLeast = 1e-12;    // kg m^2; MuJoCo takes no less than 1e-14
@@ -39,4 +39,4 @@ Eigen::Matrix3d RepairedInertia(const Eigen::Matrix3d& I) {
   return solver.eigenvectors() * moments.asDiagonal() * solver.eigenvectors().transpose();
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <string>
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// Why a matrix is no inertia of a solid: not positive definite, or one of its principal moments is
 /// more than the sum of the others. Empty if it is one.
@@ -14,4 +14,4 @@ std::string WhyNoInertia(const Eigen::Matrix3d& I);
 /// missing.
 Eigen::Matrix3d RepairedInertia(const Eigen::Matrix3d& I);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
@@ -132,4 +132,4 @@ Eigen::VectorXd RandomConfiguration(const robot::RobotModel& robot, RandomStream
   return q;
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

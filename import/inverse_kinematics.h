@@ -8,7 +8,7 @@
 #include "sidestep/core/random.h"
 #include "sidestep/robot/robot_model.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// Where a link is to be.
 struct LinkTarget {
@@ -36,4 +36,4 @@ std::optional<Eigen::VectorXd> SolvePose(
 /// either way.
 Eigen::VectorXd RandomConfiguration(const robot::RobotModel& robot, RandomStream& random);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -11,7 +11,7 @@
 #include <exception>
 #include <new>
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 constexpr rlim_t kMostCpu_s = 60, kMostBytes = rlim_t{8} << 30;
@@ -104,4 +104,4 @@ InputError AsInputError(const std::string& path, const std::runtime_error& error
   return InputError(text.substr(0, behind), text.substr(behind + 2));
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -6,7 +6,7 @@
 
 #include "sidestep/core/input_error.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// Runs `work` in a process of its own, and returns what it returned. So libraries that crash, loop
 /// or grab memory on a damaged file end that process alone: it may take a minute of CPU time, and
@@ -18,4 +18,4 @@ std::string RunIsolated(const std::function<std::string()>& work);
 /// What RunIsolated threw, told of a file: as it is where it begins with the file's place.
 InputError AsInputError(const std::string& path, const std::runtime_error& error);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -7,7 +7,7 @@
 #include "sidestep/core/joined.h"
 #include "sidestep/core/number_text.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 class Choice {
@@ -222,4 +222,4 @@ JointChoice ChooseJoints(const robot::RobotTree& tree, const ArmChoices& choices
   return Choice(tree, choices).Run();
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -7,7 +7,7 @@
 #include "sidestep/import/arm_choices.h"
 #include "sidestep/robot/robot_tree.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// How one joint of a tree moves in the arm that is made of it.
 struct JointRole {
@@ -29,4 +29,4 @@ struct JointChoice {
 /// @throws InputError.
 JointChoice ChooseJoints(const robot::RobotTree& tree, const ArmChoices& choices);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

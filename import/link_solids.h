@@ -6,7 +6,7 @@
 #include "sidestep/core/solid.h"
 #include "sidestep/import/triangle_mesh.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// A mesh and what it is called in messages, such as its file.
 struct NamedMesh {
@@ -20,4 +20,4 @@ struct LinkSolids {
   std::vector<NamedMesh> meshes;    ///< closed; convex or not
 };
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -2,7 +2,7 @@
 
 #include "sidestep/import/sphere_cover.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 LinkSolids SolidsOf(const robot::ArmLink& link) {
@@ -39,4 +39,4 @@ std::vector<robot::CollisionSphere> CoverArm(const robot::ArmDescription& arm,
   return spheres;
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -5,7 +5,7 @@
 #include "sidestep/robot/arm_description.h"
 #include "sidestep/robot/robot_model.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// What an arm's collision spheres are to be like.
 struct SphereRequest {
@@ -18,4 +18,4 @@ struct SphereRequest {
 std::vector<robot::CollisionSphere> CoverArm(const robot::ArmDescription& arm,
                                              const SphereRequest& request);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

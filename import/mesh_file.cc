@@ -20,7 +20,7 @@
 #include "sidestep/core/text_file.h"
 #include "sidestep/import/isolated.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 namespace fs = std::filesystem;
@@ -280,4 +280,4 @@ LoadedMesh LoadMesh(const std::string& path, const MeshReading& reading) {
   }
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -5,7 +5,7 @@
 
 #include "sidestep/import/triangle_mesh.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// A mesh as it was read, and what a person should know of it.
 struct LoadedMesh {
@@ -25,4 +25,4 @@ struct MeshReading {
 /// vertex that is not finite, or no triangle.
 LoadedMesh LoadMesh(const std::string& path, const MeshReading& reading);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

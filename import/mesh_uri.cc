@@ -7,7 +7,7 @@
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 namespace fs = std::filesystem;
@@ -101,4 +101,4 @@ std::string ResolveMeshUri(const std::string& uri, const std::string& urdf_path,
   return path.string();
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// The file that a mesh's `filename` in a URDF means.
 /// - `package://NAME/REST` (`model://` too): REST in the folder NAME of one of `package_paths`, or
@@ -14,4 +14,4 @@ namespace sidestep::import {
 std::string ResolveMeshUri(const std::string& uri, const std::string& urdf_path,
                            const std::vector<std::string>& package_paths);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

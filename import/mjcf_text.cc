@@ -9,7 +9,7 @@
 #include "sidestep/import/arm_pose.h"
 #include "sidestep/import/robot_files.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 std::string Number(double value) { return ShortestText(value + 0.0); }  // no -0
@@ -297,4 +297,4 @@ std::string MjcfText(const robot::ArmDescription& arm, const LinkPairs& without_
   return Writer(arm).Write(without_contact);
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

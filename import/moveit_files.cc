@@ -11,7 +11,7 @@
 #include "sidestep/core/number_text.h"
 #include "sidestep/core/yaml_reader.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 using Eigen::Vector3d;
@@ -317,4 +317,4 @@ ImportedRequest ParseMoveItRequest(const std::string& text, const std::string& n
   return ReadRequest(YamlReader::FromText(text, name), name);
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

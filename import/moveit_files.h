@@ -7,7 +7,7 @@
 #include "sidestep/core/pose.h"
 #include "sidestep/scenarios/scenario.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// What stands in a scene from elsewhere.
 struct ImportedScene {
@@ -58,4 +58,4 @@ ImportedRequest ParseMoveItRequest(const std::string& text, const std::string& n
 /// A name of letters, digits, _ and - that is not in `taken`, and joins it.
 std::string FreeName(const std::string& name, std::vector<std::string>& taken);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

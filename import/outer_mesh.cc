@@ -10,7 +10,7 @@
 
 #include "sidestep/core/convex_polytope.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 using Eigen::Vector3d;
@@ -170,4 +170,4 @@ TriangleMesh OuterMesh(const PlacedShape& placed, double tolerance_m) {
   return mesh;
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

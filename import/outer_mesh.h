@@ -3,7 +3,7 @@
 #include "sidestep/core/solid.h"
 #include "sidestep/import/triangle_mesh.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// A closed convex mesh around a shape, in the frame that the shape is placed in: all of the shape
 /// is within it, and none of it is further than `tolerance_m` outside the shape (further for a
@@ -11,4 +11,4 @@ namespace sidestep::import {
 /// @param tolerance_m > 0.
 TriangleMesh OuterMesh(const PlacedShape& placed, double tolerance_m);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -9,7 +9,7 @@
 #include "sidestep/robot/arm_description.h"
 #include "sidestep/robot/robot_model.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// Pairs of links, by the joints that carry them; -1: the base.
 using LinkPairs = std::vector<robot::LinkPair>;
@@ -38,4 +38,4 @@ std::string MjcfText(const robot::ArmDescription& arm, const LinkPairs& without_
 /// The robot.yaml of an arm.
 std::string RobotYamlText(const robot::ArmDescription& arm, const RobotDetails& details);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -8,7 +8,7 @@
 #include "sidestep/robot/limit_keys.h"
 #include "sidestep/scenarios/yaml_text.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 using scenarios::Quoted;
@@ -168,4 +168,4 @@ std::string RobotYamlText(const robot::ArmDescription& arm, const RobotDetails& 
   return Writer(arm, details).Write();
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -14,7 +14,7 @@
 #include "sidestep/import/free_space.h"
 #include "sidestep/import/inverse_kinematics.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 using Eigen::Vector3d;
@@ -204,4 +204,4 @@ std::vector<std::string> PutInto(const ImportedRequest& request, const robot::Ro
   return left_out;
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -8,7 +8,7 @@
 #include "sidestep/robot/robot_model.h"
 #include "sidestep/scenarios/scenario.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// Puts what stands in a scene into a scenario, with the robot's base where it is: meshes centred
 /// on their frames, names that are none of the robot's links, the robot mounted on what its mount
@@ -25,4 +25,4 @@ void PutInto(const ImportedScene& scene, const robot::RobotModel& robot,
 std::vector<std::string> PutInto(const ImportedRequest& request, const robot::RobotModel& robot,
                                  RandomStream& random, scenarios::Scenario& scenario);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 constexpr int kDirections = 96;
@@ -196,4 +196,4 @@ std::vector<CoverSphere> ShrinkCover(const Eigen::Matrix3Xd& points_m, double co
   return Tighten(points_m, cover_m, spheres);
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

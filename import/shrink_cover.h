@@ -5,7 +5,7 @@
 
 #include "sidestep/import/cover_sphere.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// Moves spheres, and makes them smaller or larger, so that their union gets as small as it may
 /// while no point sticks out of it by more than `cover_m`; leaves out those that no point needs.
@@ -23,4 +23,4 @@ std::vector<CoverSphere> ShrinkCover(const Eigen::Matrix3Xd& points_m, double co
 std::vector<CoverSphere> Tighten(const Eigen::Matrix3Xd& points_m, double cover_m,
                                  const std::vector<CoverSphere>& spheres);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

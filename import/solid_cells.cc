@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 constexpr int kFreeRim = 2;
@@ -104,4 +104,4 @@ SolidCells FillCells(const std::vector<TriangleMesh>& meshes, int cells_along) {
   return cells;
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

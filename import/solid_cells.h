@@ -5,7 +5,7 @@
 #include "sidestep/core/grid.h"
 #include "sidestep/import/triangle_mesh.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// The inside of closed meshes, by lines along x through the middle of the cells of a grid.
 struct SolidCells {
@@ -19,4 +19,4 @@ struct SolidCells {
 /// @param cells_along how many cells the longest edge of the box around them has, >= 1.
 SolidCells FillCells(const std::vector<TriangleMesh>& meshes, int cells_along);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

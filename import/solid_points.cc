@@ -4,7 +4,7 @@
 
 #include "sidestep/core/convex_polytope.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 constexpr double kPi = 3.141592653589793;
@@ -55,4 +55,4 @@ void AppendBalls(const robot::LinkSolid& solid, std::vector<Ball>* balls) {
   std::visit(append, std::get<Shape>(solid.form));
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -5,7 +5,7 @@
 
 #include "sidestep/robot/arm_description.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// A ball in a link's frame; of radius 0, a point.
 struct Ball {
@@ -17,4 +17,4 @@ struct Ball {
 /// more than 0.5 % of its radius, and an ellipsoid, which stands for its box.
 void AppendBalls(const robot::LinkSolid& solid, std::vector<Ball>* balls);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -13,7 +13,7 @@
 #include "sidestep/import/mesh_uri.h"
 #include "sidestep/import/urdf_pose.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 constexpr double kLargest_m = 10;  // of a link's solid
@@ -130,4 +130,4 @@ std::vector<robot::LinkSolid> ReadSolids(const UrdfFile& file, const urdf::Link&
   return solids;
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

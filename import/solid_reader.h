@@ -7,7 +7,7 @@
 #include "sidestep/import/urdf_file.h"
 #include "sidestep/robot/arm_description.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// What of a URDF's link can touch. Adds to `notes` what was made of its meshes.
 /// @throws InputError at the line of a solid that cannot be one.
@@ -15,4 +15,4 @@ std::vector<robot::LinkSolid> ReadSolids(const UrdfFile& file, const urdf::Link&
                                          const ArmChoices& choices,
                                          std::vector<std::string>* notes);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

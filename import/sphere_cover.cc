@@ -14,7 +14,7 @@
 #include "sidestep/import/sphere_union.h"
 #include "sidestep/import/uncovered.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -242,4 +242,4 @@ CoverCheck CheckCover(const LinkSolids& solids, const std::vector<CoverSphere>& 
   return check;
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -5,7 +5,7 @@
 #include "sidestep/import/cover_sphere.h"
 #include "sidestep/import/link_solids.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// What covers are asked for. A tolerance alone: as few spheres as it takes; a number alone: as
 /// small a tolerance as they reach; both: as little volume as there is.
@@ -61,4 +61,4 @@ struct CoverCheck {
 CoverCheck CheckCover(const LinkSolids& solids, const std::vector<CoverSphere>& spheres,
                       double precision_m);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

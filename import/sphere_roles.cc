@@ -5,7 +5,7 @@
 #include "sidestep/import/arm_pose.h"
 #include "sidestep/import/solid_points.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 constexpr int kConfigurations = 200;
@@ -113,4 +113,4 @@ LinkPairs SeparablePairs(const robot::ArmDescription& arm,
   return separable;
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -4,7 +4,7 @@
 
 #include "sidestep/import/robot_files.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// The spheres that nothing can move away from what the robot stands on: those of links that never
 /// move, and others that reach down to it at every configuration tried.
@@ -31,4 +31,4 @@ LinkPairs SeparablePairs(const robot::ArmDescription& arm,
                          const std::vector<robot::CollisionSphere>& spheres, const LinkPairs& pairs,
                          const Eigen::VectorXd& home);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 struct Circle {
@@ -89,4 +89,4 @@ double UnionVolume_m3(const std::vector<CoverSphere>& spheres, int num_slices) {
   return volume;
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 void PointThinner::Add(const Eigen::Vector3d& p) {
   std::array<std::int64_t, 3> cube;
@@ -55,4 +55,4 @@ double Area_m2(const std::vector<TriangleMesh>& meshes) {
   return area;
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

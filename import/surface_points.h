@@ -8,7 +8,7 @@
 
 #include "sidestep/import/triangle_mesh.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// Of the points that it is given, keeps the first one in each cube of a grid.
 class PointThinner {
@@ -31,4 +31,4 @@ Eigen::Matrix3Xd SurfacePoints(const std::vector<TriangleMesh>& meshes, double a
 /// The area of the surface of meshes [m^2].
 double Area_m2(const std::vector<TriangleMesh>& meshes);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

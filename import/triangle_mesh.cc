@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 double SignedVolume_m3(const TriangleMesh& mesh) {
   double six_volumes = 0;
@@ -14,4 +14,4 @@ double SignedVolume_m3(const TriangleMesh& mesh) {
   return six_volumes / 6;
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// The surface of a solid, in the frame of what it belongs to [m].
 struct TriangleMesh {
@@ -14,4 +14,4 @@ struct TriangleMesh {
 /// the sum of the signed tetrahedra between its triangles and the origin.
 double SignedVolume_m3(const TriangleMesh& mesh);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

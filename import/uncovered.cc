@@ -8,7 +8,7 @@
 
 #include "sidestep/import/surface_points.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 using Corners = std::array<Eigen::Vector3d, 3>;
@@ -169,4 +169,4 @@ void GrowToCover(const std::vector<TriangleMesh>& meshes, double cover_m, double
   });
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

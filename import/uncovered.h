@@ -6,7 +6,7 @@
 #include "sidestep/import/cover_sphere.h"
 #include "sidestep/import/triangle_mesh.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// How far the surface of meshes sticks out of a union of spheres at its worst point.
 struct Uncovered {
@@ -38,4 +38,4 @@ Eigen::Matrix3Xd FindOutside(const std::vector<TriangleMesh>& meshes,
 void GrowToCover(const std::vector<TriangleMesh>& meshes, double cover_m, double steps_per_m,
                  std::vector<CoverSphere>* spheres);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

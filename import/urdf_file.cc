@@ -15,7 +15,7 @@
 #include "sidestep/core/text_file.h"
 #include "sidestep/import/urdfdom_messages.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 using tinyxml2::XMLElement;
@@ -345,4 +345,4 @@ UrdfFile ParseUrdf(const std::string& text, const std::string& path) {
   return file;
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// A URDF that has been read and is sound in form: a tree of links with one root, joints of known
 /// kinds, numbers that are numbers.
@@ -31,4 +31,4 @@ UrdfFile ReadUrdf(const std::string& path);
 /// The same for a text. @param path stands for it in messages.
 UrdfFile ParseUrdf(const std::string& text, const std::string& path);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

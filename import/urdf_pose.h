@@ -4,7 +4,7 @@
 
 #include "sidestep/core/pose.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 inline Pose PoseOf(const urdf::Pose& pose) {
   const urdf::Rotation& R = pose.rotation;
@@ -12,4 +12,4 @@ inline Pose PoseOf(const urdf::Pose& pose) {
               Eigen::Vector3d(pose.position.x, pose.position.y, pose.position.z));
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -9,7 +9,7 @@
 #include "sidestep/import/urdf_file.h"
 #include "sidestep/import/urdf_pose.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 class Reader {
@@ -131,4 +131,4 @@ robot::RobotTree ReadUrdfTree(const std::string& path, const ArmChoices& choices
   return Reader(file, choices).Read();
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -2,7 +2,7 @@
 
 #include <console_bridge/console.h>
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 class UrdfdomMessages::Handler final : public console_bridge::OutputHandler {
  public:
@@ -24,4 +24,4 @@ UrdfdomMessages::~UrdfdomMessages() { console_bridge::restorePreviousOutputHandl
 
 std::string UrdfdomMessages::text() const { return handler_->text(); }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

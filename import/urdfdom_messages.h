@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// Keeps what urdfdom says from the console as long as it lives, which is where urdfdom says it.
 class UrdfdomMessages {
@@ -20,4 +20,4 @@ class UrdfdomMessages {
   std::unique_ptr<Handler> handler_;
 };
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

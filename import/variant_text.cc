@@ -6,7 +6,7 @@
 #include "sidestep/core/number_text.h"
 #include "sidestep/scenarios/yaml_text.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 // A name as YAML takes it for one.
@@ -47,4 +47,4 @@ std::string VariantText(const Variant& variant) {
   return text;
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

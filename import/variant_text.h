@@ -7,7 +7,7 @@
 
 #include "sidestep/import/cover_sphere.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// Other spheres for a robot (docs/robots.md, "Variants").
 struct Variant {
@@ -26,4 +26,4 @@ struct Variant {
 /// The text of its file.
 std::string VariantText(const Variant& variant);
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -50,6 +50,7 @@ void ReadModel(const YamlReader& map, Scenario& scenario) {
     scenario.robot_variant = model.substr(colon + 1);
     model.resize(colon);
     if (scenario.robot_variant.empty()) map.Fail("model", "must name a variant behind the colon");
+    if (model.empty()) map.Fail("model", "must name a robot before the colon");
   }
   if (model.find('/') == std::string::npos) {
     scenario.robot = model;

@@ -7,7 +7,7 @@
 namespace {
 
 // What stands in the scene, as a scenario would say it.
-void WriteAndRead(const sidestep::import::ImportedScene& scene) {
+void WriteAndRead(const sidestep::imports::ImportedScene& scene) {
   sidestep::scenarios::Scenario scenario;
   scenario.name = "scene";
   scenario.description = "A scene";
@@ -26,12 +26,12 @@ void WriteAndRead(const sidestep::import::ImportedScene& scene) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(bytes), size);
   try {
-    sidestep::import::ParseMoveItRequest(text, "fuzz.yaml");
+    sidestep::imports::ParseMoveItRequest(text, "fuzz.yaml");
   } catch (const sidestep::InputError&) {
   }
-  sidestep::import::ImportedScene scene;
+  sidestep::imports::ImportedScene scene;
   try {
-    scene = sidestep::import::ParseMoveItScene(text, "fuzz.yaml");
+    scene = sidestep::imports::ParseMoveItScene(text, "fuzz.yaml");
   } catch (const sidestep::InputError&) {
     return 0;
   }

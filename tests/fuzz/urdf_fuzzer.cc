@@ -10,11 +10,11 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   const sidestep::MemoryFile file(bytes, size);
   try {
-    const sidestep::import::ArmChoices choices;
-    const auto imported =
-        sidestep::import::ArmOfTree(sidestep::import::ReadUrdfTree(file.path(), choices), choices);
+    const sidestep::imports::ArmChoices choices;
+    const auto imported = sidestep::imports::ArmOfTree(
+        sidestep::imports::ReadUrdfTree(file.path(), choices), choices);
     const auto n = static_cast<Eigen::Index>(imported.arm.limits.size());
-    const auto links = sidestep::import::LinkPosesAt(imported.arm, Eigen::VectorXd::Zero(n));
+    const auto links = sidestep::imports::LinkPosesAt(imported.arm, Eigen::VectorXd::Zero(n));
     if (links.size() + 1 != imported.arm.links.size()) std::abort();
   } catch (const sidestep::InputError&) {
   }

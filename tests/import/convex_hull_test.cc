@@ -8,7 +8,7 @@
 
 #include "sidestep/core/random.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 using Eigen::Matrix3Xd;
@@ -100,4 +100,4 @@ TEST(SimplerHull, IsTheHullWhereItHasFewCorners) {
 }
 
 }  // namespace
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -10,7 +10,7 @@
 
 #include "sidestep/core/input_error.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 std::string MessageOf(const std::function<std::string()>& work) {
@@ -47,4 +47,4 @@ TEST(Isolated, OutlivesACrash) {
 }
 
 }  // namespace
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

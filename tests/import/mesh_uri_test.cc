@@ -9,7 +9,7 @@
 #include "sidestep/core/input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 namespace fs = std::filesystem;
@@ -66,4 +66,4 @@ TEST_F(MeshUri, ThatLeadsNowhereSaysWhy) {
 }
 
 }  // namespace
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

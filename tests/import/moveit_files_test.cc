@@ -13,7 +13,7 @@
 #include "sidestep/core/input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 using Eigen::Vector3d;
@@ -167,4 +167,4 @@ TEST(FreeName, IsFitForAScenarioAndNotTaken) {
 }
 
 }  // namespace
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

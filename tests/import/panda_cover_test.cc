@@ -10,7 +10,7 @@
 #include "sidestep/sim/robot_agreement.h"
 #include "sidestep/sim/robot_solids.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 const std::string kModels = SIDESTEP_SOURCE_DIR "/models";
@@ -66,4 +66,4 @@ TEST(CoveredPanda, IsThePandaWithOtherSpheres) {
 }
 
 }  // namespace
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

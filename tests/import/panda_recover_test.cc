@@ -9,7 +9,7 @@
 #include "sidestep/sim/arm_file.h"
 #include "sidestep/sim/robot_solids.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 std::vector<LinkSolids> Panda() {
@@ -56,4 +56,4 @@ TEST(PandaCoveredAnew, Reaches12MmWith25Spheres) {
 }
 
 }  // namespace
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -8,7 +8,7 @@
 #include "sidestep/import/outer_mesh.h"
 #include "sidestep/import/triangle_mesh.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 
 /// A closed mesh with dents and bumps: a ball whose radius varies with the direction, by at most
 /// `bumps` of itself.
@@ -63,4 +63,4 @@ inline Eigen::Matrix3Xd DensePoints(const TriangleMesh& mesh, double apart_m) {
   return all;
 }
 
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

@@ -14,7 +14,7 @@
 #include "tests/import/sample_meshes.h"
 #include "tests/support/random_points.h"
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 double OutOf(const std::vector<CoverSphere>& spheres, const Eigen::Vector3d& p) {
@@ -191,4 +191,4 @@ TEST(CheckCover, TellsWhichSolidSticksOutAndWhere) {
 }
 
 }  // namespace
-}  // namespace sidestep::import
+}  // namespace sidestep::imports

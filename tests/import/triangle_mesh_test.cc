@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace sidestep::import {
+namespace sidestep::imports {
 namespace {
 
 TriangleMesh Tetrahedron() {
@@ -32,4 +32,4 @@ TEST(TriangleMesh, ThatIsInsideOutHasANegativeVolume) {
 }
 
 }  // namespace
-}  // namespace sidestep::import
+}  // namespace sidestep::imports
