@@ -261,7 +261,9 @@ class Checker {
     for (const auto& [path, text] : tree_) {
       if (!(EndsWith(path, ".h") || EndsWith(path, ".cc"))) continue;
       const std::string module = TopFolder(path);
-      const std::string home = module == "core" ? "sidestep::" : "sidestep::" + module + "::";
+      // `import` is a word of C++20.
+      const std::string space = module == "import" ? "imports" : module;
+      const std::string home = module == "core" ? "sidestep::" : "sidestep::" + space + "::";
       for (const DefinedType& type : FindDefinedTypes(text)) {
         const auto [first, is_new] = where.insert({type.name, path});
         // Each test is a program of its own; only what it shares with others must be unique.
