@@ -123,7 +123,7 @@ INSTANTIATE_TEST_SUITE_P(
         Course{"Crosses25cmPerS", kCrossing},
         Course{"Stops",
                "{linear: {start_m: [0.4, 1.65, 0.45], direction: [0, -1, 0], speed_m_s: 0.25, "
-               "stop_at_s: 4.6}}"},
+               "stop_at_s: 3.8}}"},
         Course{"Reverses",
                "{waypoints: {points: [{position_m: [0.4, 1.65, 0.45]}, {position_m: [0.4, 0.5, "
                "0.45]}, {position_m: [0.4, 1.65, 0.45]}], speed_m_s: 0.25}}"},
