@@ -125,11 +125,11 @@ INSTANTIATE_TEST_SUITE_P(
                "{linear: {start_m: [0.4, 1.65, 0.45], direction: [0, -1, 0], speed_m_s: 0.25, "
                "stop_at_s: 3.8}}"},
         Course{"Reverses",
-               "{waypoints: {points: [{position_m: [0.4, 1.65, 0.45]}, {position_m: [0.4, 0.5, "
+               "{waypoints: {points: [{position_m: [0.4, 1.65, 0.45]}, {position_m: [0.4, 0.7, "
                "0.45]}, {position_m: [0.4, 1.65, 0.45]}], speed_m_s: 0.25}}"},
         Course{"TurnsBy90Degrees",
-               "{waypoints: {points: [{position_m: [0.4, 1.65, 0.45]}, {position_m: [0.4, 0.5, "
-               "0.45]}, {position_m: [1.4, 0.5, 0.45]}], speed_m_s: 0.25}}"}),
+               "{waypoints: {points: [{position_m: [0.4, 1.65, 0.45]}, {position_m: [0.4, 0.7, "
+               "0.45]}, {position_m: [1.4, 0.7, 0.45]}], speed_m_s: 0.25}}"}),
     [](const auto& test) { return test.param.name; });
 
 TEST_F(HardwareCamera, DoesItAgainToTheBit) {
