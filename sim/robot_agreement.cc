@@ -8,11 +8,12 @@
 #include <vector>
 
 #include "sidestep/core/input_error.h"
-#include "sidestep/core/random.h"
 #include "sidestep/robot/limit_keys.h"
 #include "sidestep/scenarios/yaml_text.h"
+#include "sidestep/sim/link_frame.h"
 #include "sidestep/sim/mjcf_lines.h"
 #include "sidestep/sim/mujoco_model.h"
+#include "sidestep/sim/robot_configuration.h"
 #include "sidestep/sim/tied_joints.h"
 #include "sidestep/sim/world_xml.h"
 
@@ -23,7 +24,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 1e-4;  // what four written digits leave, with room
 constexpr int kNumConfigurations = 16;
 constexpr int kPictureGroup = 2;
-constexpr double kUnlimited_rad = 3;  // how far a joint without limits is turned here
 
 bool AreSame(double a, double b) {
   if (std::isinf(a) || std::isinf(b)) return a == b;
@@ -149,13 +149,13 @@ class Comparison {
   // after it.
   void CheckKinematics() const {
     const std::vector<robot::Joint>& joints = robot_.joints();
-    std::vector<Frame> frames;
+    std::vector<LinkFrame> frames;
     for (std::size_t i = 0; i < joints.size(); ++i) frames.push_back(FindFrame(i));
     const MujocoDataPtr data = MakeMujocoData(model_);
     std::vector<Difference> worst(joints.size());
     RandomStream random(1, "robot agreement");
     for (int k = 0; k < kNumConfigurations; ++k) {
-      const Eigen::VectorXd q = DrawConfiguration(random);
+      const Eigen::VectorXd q = DrawConfiguration(robot_, random);
       for (int i = 0; i < robot_.num_joints(); ++i) {
         const int joint = joints_[static_cast<std::size_t>(i)];
         data->qpos[model_.jnt_qposadr[joint]] = q(i);
@@ -257,31 +257,16 @@ class Comparison {
     double apart_m = 0, turned_rad = 0;
   };
 
-  // What stands in the MJCF where the link of a joint is: its body, or a site.
-  struct Frame {
-    bool is_site = false;
-    int id = -1;
-    std::string name;
-  };
-
-  // Of a row of a table the site `dh<number>`, for bodies stand elsewhere; of any other joint what
-  // has its link's name.
-  Frame FindFrame(std::size_t i) const {
+  LinkFrame FindFrame(std::size_t i) const {
+    const LinkFrame frame = FindLinkFrame(robot_, model_, i);
+    if (frame.id >= 0) return frame;
     const robot::Joint& joint = robot_.joints()[i];
     if (!joint.dh) {
-      const int body = mj_name2id(&model_, mjOBJ_BODY, joint.link.c_str());
-      if (body >= 0) return {false, body, joint.link};
-      const int site = mj_name2id(&model_, mjOBJ_SITE, joint.link.c_str());
-      if (site >= 0) return {true, site, joint.link};
       FailInYaml(KeyOfJoint(i) + (robot_.LineOf(KeyOfJoint(i) + ".link") > 1 ? ".link" : ".name"),
                  "'" + joint.link + "' is no body and no site of " + mjcf_.path());
     }
-    std::size_t number = 0;
-    for (std::size_t k = 0; k <= i; ++k) number += robot_.joints()[k].dh.has_value();
-    const std::string name = "dh" + std::to_string(number);
-    const int site = mj_name2id(&model_, mjOBJ_SITE, name.c_str());
-    if (site >= 0) return {true, site, name};
-    throw InputError(mjcf_.path(), mjcf_.Find("joint", "name", joint.name), "site '" + name + "'",
+    throw InputError(mjcf_.path(), mjcf_.Find("joint", "name", joint.name),
+                     "site '" + frame.name + "'",
                      "is missing: it marks the frame after " + KeyOfJoint(i) + ".dh of " +
                          InYamlOf(i, ".dh") + ", beyond joint '" + joint.name + "'");
   }
@@ -295,7 +280,7 @@ class Comparison {
     return Pose(Eigen::Quaterniond(turn), Eigen::Vector3d::Zero()).Inverse();
   }
 
-  void CheckFrame(std::size_t i, const Frame& frame, const Difference& difference) const {
+  void CheckFrame(std::size_t i, const LinkFrame& frame, const Difference& difference) const {
     if (difference.size() <= kRounding) return;
     const bool is_row = robot_.joints()[i].dh.has_value();
     const std::string what = (frame.is_site ? "the site '" : "the body '") + frame.name + "'";
@@ -381,17 +366,6 @@ class Comparison {
                                               scenarios::Number(Rounded(in_mjcf))));
   }
 
-  Eigen::VectorXd DrawConfiguration(RandomStream& random) const {
-    Eigen::VectorXd q(robot_.num_joints());
-    for (int i = 0; i < q.size(); ++i) {
-      const robot::JointLimits& limits = robot_.limits()[static_cast<std::size_t>(i)];
-      const double first = std::max(limits.q_min, std::min(-kUnlimited_rad, limits.q_max - 1));
-      const double last = std::min(limits.q_max, std::max(kUnlimited_rad, limits.q_min + 1));
-      q(i) = first + (last - first) * random.Uniform();
-    }
-    return q;
-  }
-
   bool IsOfRobot(int body) const {
     const int robot = mj_name2id(&model_, mjOBJ_BODY, kRobotBody);
     return robot < 0 || model_.body_rootid[body] == robot;  // alone, or in a world
@@ -399,22 +373,7 @@ class Comparison {
 
   Pose BaseIn(const mjData& data) const {
     const int body = mj_name2id(&model_, mjOBJ_BODY, kRobotBody);
-    if (body < 0) return Pose();
-    const mjtNum* const R = data.xquat + 4 * body;
-    return Pose(Eigen::Quaterniond(R[0], R[1], R[2], R[3]),
-                Eigen::Map<const Eigen::Vector3d>(data.xpos + 3 * body));
-  }
-
-  Pose PoseOf(const mjData& data, const Frame& frame) const {
-    if (!frame.is_site) {
-      const mjtNum* const R = data.xquat + 4 * frame.id;
-      return Pose(Eigen::Quaterniond(R[0], R[1], R[2], R[3]),
-                  Eigen::Map<const Eigen::Vector3d>(data.xpos + 3 * frame.id));
-    }
-    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(data.site_xmat +
-                                                                           9 * frame.id);
-    return Pose(Eigen::Quaterniond(Eigen::Matrix3d(R)),
-                Eigen::Map<const Eigen::Vector3d>(data.site_xpos + 3 * frame.id));
+    return body < 0 ? Pose() : PoseOf(data, {false, body, kRobotBody});
   }
 
   // The joint that number i of a configuration moves.

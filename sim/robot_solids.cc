@@ -11,25 +11,6 @@
 namespace sidestep::sim {
 namespace {
 
-// None of a mesh, nor of what no robot is made of.
-std::optional<Shape> ShapeOf(const mjModel& model, int geom) {
-  const mjtNum* const size = model.geom_size + 3 * geom;
-  switch (model.geom_type[geom]) {
-    case mjGEOM_BOX:
-      return Box{2 * Eigen::Vector3d(size[0], size[1], size[2])};
-    case mjGEOM_SPHERE:
-      return Sphere{size[0]};
-    case mjGEOM_CAPSULE:
-      return Capsule{size[0], 2 * size[1]};
-    case mjGEOM_CYLINDER:
-      return Cylinder{size[0], 2 * size[1]};
-    case mjGEOM_ELLIPSOID:
-      return Ellipsoid{Eigen::Vector3d(size[0], size[1], size[2])};
-    default:
-      return std::nullopt;
-  }
-}
-
 std::string BodyOf(const mjModel& model, int geom) {
   const char* const name = mj_id2name(&model, mjOBJ_BODY, model.geom_bodyid[geom]);
   return name == nullptr ? "" : name;
@@ -60,7 +41,7 @@ std::vector<RigidLink> FindRigidLinks(const robot::RobotModel& robot, const mjMo
     if (model.geom_contype[geom] == 0 && model.geom_conaffinity[geom] == 0) continue;
     RigidLink& link = carrier(CarrierOfBody(robot, model, model.geom_bodyid[geom]));
     const Pose X_LG = pose(link.link).Inverse() * GeomPose(*data, geom);
-    if (const std::optional<Shape> shape = ShapeOf(model, geom)) {
+    if (const std::optional<Shape> shape = ShapeOfGeom(model, geom)) {
       link.shapes.push_back({*shape, X_LG});
       link.shape_body.push_back(BodyOf(model, geom));
     } else if (model.geom_type[geom] == mjGEOM_MESH) {

@@ -1,39 +1,16 @@
 #include "sidestep/sim/robot_survey.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
-#include <optional>
 #include <set>
 #include <utility>
 
+#include "sidestep/sim/link_frame.h"
 #include "sidestep/sim/mujoco_model.h"
 #include "sidestep/sim/robot_configuration.h"
 
 namespace sidestep::sim {
 namespace {
-
-using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-
-// Where the MJCF has the frame of a link.
-std::optional<Pose> FrameOf(const robot::RobotModel& robot, const mjModel& model,
-                            const mjData& data, std::size_t joint) {
-  const auto& joints = robot.joints();
-  std::string name = joints[joint].link;
-  if (joints[joint].dh) {
-    const auto row =
-        std::count_if(joints.begin(), joints.begin() + static_cast<std::ptrdiff_t>(joint) + 1,
-                      [](const robot::Joint& one) { return one.dh.has_value(); });
-    name = "dh" + std::to_string(row);
-  } else if (const int body = mj_name2id(&model, mjOBJ_BODY, name.c_str()); body >= 0) {
-    return Pose(Eigen::Quaterniond(Eigen::Map<const RowMajor3>(data.xmat + 9 * body)),
-                Eigen::Map<const Eigen::Vector3d>(data.xpos + 3 * body));
-  }
-  const int site = mj_name2id(&model, mjOBJ_SITE, name.c_str());
-  if (site < 0) return std::nullopt;
-  return Pose(Eigen::Quaterniond(Eigen::Map<const RowMajor3>(data.site_xmat + 9 * site)),
-              Eigen::Map<const Eigen::Vector3d>(data.site_xpos + 3 * site));
-}
 
 std::string BodyName(const mjModel& model, int body) {
   const char* const name = mj_id2name(&model, mjOBJ_BODY, body);
@@ -46,16 +23,20 @@ FrameDifference FindWorstFrame(const robot::RobotModel& robot, const mjModel& mo
                                int num_configurations, std::uint64_t seed) {
   FrameDifference worst;
   const MujocoDataPtr data = MakeMujocoData(model);
+  std::vector<LinkFrame> frames;
+  for (std::size_t i = 0; i < robot.joints().size(); ++i) {
+    frames.push_back(FindLinkFrame(robot, model, i));
+  }
   RandomStream random(seed, "frames");
   for (int k = 0; k < num_configurations; ++k) {
     const Eigen::VectorXd q = DrawConfiguration(robot, random);
     PutAt(robot, model, q, data.get());
     const std::vector<Pose> X_WL = robot.ComputeLinkPoses(q);
     for (std::size_t i = 0; i < X_WL.size(); ++i) {
-      const std::optional<Pose> frame = FrameOf(robot, model, *data, i);
-      if (!frame) continue;
-      const double apart_m = (X_WL[i].translation() - frame->translation()).norm();
-      const double turned_rad = X_WL[i].rotation().angularDistance(frame->rotation());
+      if (frames[i].id < 0) continue;
+      const Pose frame = PoseOf(*data, frames[i]);
+      const double apart_m = (X_WL[i].translation() - frame.translation()).norm();
+      const double turned_rad = X_WL[i].rotation().angularDistance(frame.rotation());
       if (apart_m > worst.apart_m) worst.link = robot.joints()[i].link;
       worst.apart_m = std::max(worst.apart_m, apart_m);
       worst.turned_rad = std::max(worst.turned_rad, turned_rad);

@@ -1,7 +1,6 @@
 #include "sidestep/sim/simulation.h"
 
 #include "sidestep/core/input_error.h"
-#include "sidestep/robot/model_name.h"
 #include "sidestep/sim/arm_file.h"
 #include "sidestep/sim/mujoco_model.h"
 #include "sidestep/sim/no_robot.h"

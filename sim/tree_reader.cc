@@ -13,6 +13,7 @@
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
 #include "sidestep/core/text_file.h"
+#include "sidestep/sim/geom_solids.h"
 #include "sidestep/sim/mjcf_lines.h"
 #include "sidestep/sim/mjcf_tags.h"
 #include "sidestep/sim/mujoco_model.h"
@@ -213,10 +214,7 @@ class Reader {
     joint.axis_J = Eigen::Map<const Eigen::Vector3d>(model_.jnt_axis + 3 * id);
     const double reference = model_.qpos0[model_.jnt_qposadr[id]];
     if (reference != 0) {
-      joint.X_PJ = joint.X_PJ *
-                   (slides ? Pose::Translation(-reference * joint.axis_J)
-                           : Pose(Eigen::Quaterniond(Eigen::AngleAxisd(-reference, joint.axis_J)),
-                                  Eigen::Vector3d::Zero()));
+      joint.X_PJ = joint.X_PJ * robot::MotionOf(joint.kind, joint.axis_J, -reference);
     }
     if (model_.jnt_limited[id] != 0) {
       joint.q_min = model_.jnt_range[2 * id];
@@ -283,38 +281,21 @@ class Reader {
   }
 
   void AddSolid(int body, int geom, robot::ArmLink* link) {
-    const Eigen::Map<const Eigen::Vector3d> size(model_.geom_size + 3 * geom);
     robot::LinkSolid solid;
     solid.X_LS = Pose::Translation(-AnchorOf(body)) *
                  PoseAt(model_.geom_pos + 3 * geom, model_.geom_quat + 4 * geom);
-    switch (model_.geom_type[geom]) {
-      case mjGEOM_SPHERE:
-        solid.form = Sphere{size(0)};
-        break;
-      case mjGEOM_CAPSULE:
-        solid.form = Capsule{size(0), 2 * size(1)};
-        break;
-      case mjGEOM_CYLINDER:
-        solid.form = Cylinder{size(0), 2 * size(1)};
-        break;
-      case mjGEOM_ELLIPSOID:
-        solid.form = Ellipsoid{size};
-        break;
-      case mjGEOM_BOX:
-        solid.form = Box{2 * size};
-        break;
-      case mjGEOM_MESH: {
-        const int mesh = model_.geom_dataid[geom];
-        solid.source = NameOf(mjOBJ_MESH, mesh);
-        solid.form = robot::HullSolid{
-            Eigen::Map<const Eigen::Matrix3Xf>(model_.mesh_vert + 3 * model_.mesh_vertadr[mesh], 3,
-                                               model_.mesh_vertnum[mesh])
-                .cast<double>(),
-            {}};
-        break;
-      }
-      default:
-        Fail(body, "has a plane or a height field, which no link can be");
+    if (const std::optional<Shape> shape = ShapeOfGeom(model_, geom)) {
+      solid.form = *shape;
+    } else if (model_.geom_type[geom] == mjGEOM_MESH) {
+      const int mesh = model_.geom_dataid[geom];
+      solid.source = NameOf(mjOBJ_MESH, mesh);
+      solid.form = robot::HullSolid{
+          Eigen::Map<const Eigen::Matrix3Xf>(model_.mesh_vert + 3 * model_.mesh_vertadr[mesh], 3,
+                                             model_.mesh_vertnum[mesh])
+              .cast<double>(),
+          {}};
+    } else {
+      Fail(body, "has a plane or a height field, which no link can be");
     }
     link->solids.push_back(std::move(solid));
   }

@@ -16,10 +16,11 @@
 #include <string>
 #include <vector>
 
+#include "sidestep/core/model_name.h"
 #include "sidestep/core/random.h"
 #include "sidestep/core/shape.h"
-#include "sidestep/robot/model_name.h"
 #include "sidestep/robot/robot_model.h"
+#include "sidestep/robot/variant_names.h"
 #include "tests/robot/geom_surface.h"
 
 namespace sidestep::robot {
