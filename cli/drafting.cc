@@ -11,8 +11,8 @@
 #include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
+#include "sidestep/core/model_name.h"
 #include "sidestep/core/utf8.h"
-#include "sidestep/robot/model_name.h"
 #include "sidestep/sim/simulation.h"
 #include "sidestep/sim/static_geoms.h"
 
@@ -37,7 +37,7 @@ Draft BeginDraft(const std::string& robot, const Pose& X_WB, const std::string& 
                  const DataPaths& paths) {
   const ModelFolders models = paths.all_models();
   const bool is_path = robot.find('/') != std::string::npos;
-  const std::string own = robot::ModelFolder(robot), variant = robot::ModelVariant(robot);
+  const std::string own = ModelFolder(robot), variant = ModelVariant(robot);
   const std::vector<std::string> known = robot::RobotModel::ListNames(models);
   if (!is_path && std::find(known.begin(), known.end(), own) == known.end()) {
     throw InputError("--robot", "must be one of " + Joined(known) + " (of " +

@@ -9,7 +9,8 @@
 #include "sidestep/cli/sensors.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
-#include "sidestep/robot/model_name.h"
+#include "sidestep/core/model_name.h"
+#include "sidestep/robot/variant_names.h"
 #include "sidestep/scenarios/variations.h"
 #include "sidestep/sdf/prediction/registry.h"
 #include "sidestep/sdf/world_model.h"
@@ -116,7 +117,7 @@ void CheckRobotIsThere(const scenarios::Scenario& scenario, const ModelFolders& 
             "; --models DIR adds others), or a path with a /, is '" + scenario.robot + "'");
   }
   const std::string file =
-      RobotFolder(scenario, models) + "/" + robot::DescriptionFile(scenario.robot_variant);
+      RobotFolder(scenario, models) + "/" + DescriptionFile(scenario.robot_variant);
   std::error_code error;
   if (std::filesystem::exists(file, error)) return;
   const std::vector<std::string> variants = robot::VariantNames(RobotFolder(scenario, models));

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <limits>
 #include <optional>
 #include <string>
@@ -47,5 +47,19 @@ struct Joint {
   /// another.
   double multiplier = 1, offset = 0;
 };
+
+/// X_JL of a joint with an axis, at a position [rad, or m of one that slides]; one that is fixed
+/// does nothing.
+inline Pose MotionOf(JointKind kind, const Eigen::Vector3d& axis_J, double position) {
+  switch (kind) {
+    case JointKind::kRevolute:
+      return Pose(Eigen::Quaterniond(Eigen::AngleAxisd(position, axis_J)), Eigen::Vector3d::Zero());
+    case JointKind::kPrismatic:
+      return Pose::Translation(position * axis_J);
+    case JointKind::kFixed:
+      break;
+  }
+  return Pose();
+}
 
 }  // namespace sidestep::robot

@@ -55,7 +55,7 @@ struct SphereCenters {
 class RobotModel {
  public:
   /// Reads the robot.yaml (its keys: docs/robots.md) of the folder of this name,
-  /// or of a variant of it (model_name.h).
+  /// or of a variant of it (core/model_name.h).
   /// @throws InputError FILE:LINE: KEY: WHY; for a name without such a file, the known names.
   static RobotModel Load(const ModelFolders& models, const std::string& name, const Pose& X_WB);
   /// The same from a robot's folder, whose name is the robot's. @param variant may be empty.

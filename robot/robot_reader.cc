@@ -7,10 +7,11 @@
 
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
+#include "sidestep/core/model_name.h"
 #include "sidestep/core/yaml_reader.h"
 #include "sidestep/robot/limit_keys.h"
-#include "sidestep/robot/model_name.h"
 #include "sidestep/robot/robot_model.h"
+#include "sidestep/robot/variant_names.h"
 
 namespace sidestep::robot {
 namespace {

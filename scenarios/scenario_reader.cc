@@ -11,6 +11,7 @@
 #include "sidestep/core/convex_polytope.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
+#include "sidestep/core/model_name.h"
 #include "sidestep/core/utf8.h"
 #include "sidestep/core/yaml_reader.h"
 #include "sidestep/scenarios/scenario.h"
@@ -44,14 +45,10 @@ constexpr double kFarthest_m = 1e6;     // beyond, positions have no tenth of a 
 
 // A name, or a path to a folder, whose own name is the robot's; and a variant, if there is a colon.
 void ReadModel(const YamlReader& map, Scenario& scenario) {
-  std::string model = map.GetString("model");
-  const std::size_t colon = model.rfind(':');
-  if (colon != std::string::npos && model.find('/', colon) == std::string::npos) {
-    scenario.robot_variant = model.substr(colon + 1);
-    model.resize(colon);
-    if (scenario.robot_variant.empty()) map.Fail("model", "must name a variant behind the colon");
-    if (model.empty()) map.Fail("model", "must name a robot before the colon");
-  }
+  const std::string name = map.GetString("model"), model = ModelFolder(name);
+  scenario.robot_variant = ModelVariant(name);
+  if (model.ends_with(":")) map.Fail("model", "must name a variant behind the colon");
+  if (model.empty()) map.Fail("model", "must name a robot before the colon");
   if (model.find('/') == std::string::npos) {
     scenario.robot = model;
     return;

@@ -12,11 +12,12 @@
 #include <memory>
 #include <string>
 
+#include "sidestep/core/model_name.h"
 #include "sidestep/core/random.h"
 #include "sidestep/planner/clearance.h"
 #include "sidestep/planner/first_guess.h"
 #include "sidestep/planner/gp_planner.h"
-#include "sidestep/robot/model_name.h"
+#include "sidestep/robot/variant_names.h"
 #include "tests/support/ball_field.h"
 
 namespace sidestep::planner {
@@ -101,7 +102,7 @@ class SelfContact : public ::testing::TestWithParam<std::string> {};
 // contacts with the fixed base, which has no spheres.
 TEST_P(SelfContact, IsSeenWithinTheMarginOfThePlanner) {
   const robot::RobotModel robot = robot::RobotModel::Load(kModels, GetParam(), Pose());
-  const std::string name = robot::ModelFolder(GetParam());
+  const std::string name = ModelFolder(GetParam());
   const std::string path = kModels + ("/" + name + "/" + name + ".xml");
   char error[1000] = "";
   const std::unique_ptr<mjModel, void (*)(mjModel*)> model(

@@ -5,8 +5,9 @@
 #include <string>
 
 #include "sidestep/core/input_error.h"
-#include "sidestep/robot/model_name.h"
+#include "sidestep/core/model_name.h"
 #include "sidestep/robot/robot_model.h"
+#include "sidestep/robot/variant_names.h"
 #include "tests/support/temporary_folder.h"
 
 namespace sidestep::robot {

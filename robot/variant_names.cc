@@ -1,4 +1,4 @@
-#include "sidestep/robot/model_name.h"
+#include "sidestep/robot/variant_names.h"
 
 #include <algorithm>
 #include <filesystem>

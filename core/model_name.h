@@ -1,12 +1,11 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
-namespace sidestep::robot {
+namespace sidestep {
 
 // A robot is named by its folder of models/, or by a path to one, or by that and a variant, as in
-// `panda:covered`: then <folder>/<variant>.yaml is read, and not <folder>/robot.yaml.
+// `panda:covered`: then <folder>/<variant>.yaml describes it, and not <folder>/robot.yaml.
 
 /// Empty if there is none.
 inline std::string ModelVariant(const std::string& name) {
@@ -25,8 +24,4 @@ inline std::string DescriptionFile(const std::string& variant) {
   return (variant.empty() ? "robot" : variant) + ".yaml";
 }
 
-/// The variants of the robot in a folder, sorted, as `panda:covered`: the files beside its
-/// robot.yaml that extend a robot.
-std::vector<std::string> VariantNames(const std::string& folder);
-
-}  // namespace sidestep::robot
+}  // namespace sidestep
