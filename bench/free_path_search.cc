@@ -9,6 +9,7 @@
 #include "sidestep/core/random.h"
 #include "sidestep/planner/clearance.h"
 #include "sidestep/planner/first_guess.h"
+#include "sidestep/robot/tolerance_scale.h"
 
 namespace sidestep::bench {
 namespace {
@@ -27,13 +28,14 @@ FreePath SearchFreePath(const scenarios::Scenario& scenario, const robot::RobotM
   request.num_fixed =
       1 + static_cast<int>(std::ceil(scenario.longest_latency_s() / scenario.step_s - 1e-9));
 
+  const Eigen::VectorXd scale = robot::ToleranceScale(robot);
   RandomStream random(seed, "free path search");
   FreePath best;
   best.clearance_m = -std::numeric_limits<double>::infinity();
   while (best.guesses < max_guesses && !best.found) {
     if (best.guesses > 0) {
       request.initial.reset();
-      request.initial = planner::MakeDetour(request, random);
+      request.initial = planner::MakeDetour(request, scale, random);
     }
     ++best.guesses;
     const planner::PlanResult result = planner->Plan(request);

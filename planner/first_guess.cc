@@ -80,13 +80,16 @@ Trajectory MakeDirectMotion(const PlanRequest& request, Timing timing) {
   });
 }
 
-Trajectory MakeDetour(const PlanRequest& request, RandomStream& random) {
+Trajectory MakeDetour(const PlanRequest& request, const Eigen::VectorXd& scale,
+                      RandomStream& random) {
   const auto share = [&random] { return kLeastShare + (1 - 2 * kLeastShare) * random.Uniform(); };
   return Complete(request, [&](const auto& q, const auto& v, double duration_s) {
     const Eigen::VectorXd way = request.q_goal - q, rest = Eigen::VectorXd::Zero(q.size());
     const double via_s = share() * duration_s;
     Eigen::VectorXd q_via = q + share() * way;
-    for (double& position : q_via) position += kDetour_rad * random.Normal();
+    for (Eigen::Index i = 0; i < q_via.size(); ++i) {
+      q_via(i) += kDetour_rad * scale(i) * random.Normal();
+    }
     return FromKnots(
         {{0, q, v}, {via_s, q_via, way / duration_s}, {duration_s, request.q_goal, rest}});
   });

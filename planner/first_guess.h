@@ -20,10 +20,14 @@ enum class Timing {
 /// begins at rest. Ignores obstacles and limits.
 Trajectory MakeDirectMotion(const PlanRequest& request, Timing timing);
 
-/// The request's fixed states, then to the goal over a random configuration off the direct line
-/// (0.7 rad standard deviation a joint), passed after 20 to 80 % of the free time: a way around
-/// what no other timing avoids. Ignores obstacles and limits.
-Trajectory MakeDetour(const PlanRequest& request, RandomStream& random);
+/// The request's fixed states, then to the goal over a random configuration off the direct line,
+/// passed after 20 to 80 % of the free time: a way around what no other timing avoids. Ignores
+/// obstacles and limits.
+///
+/// @param scale shape n: what one rad is for each joint (robot/tolerance_scale.h). The standard
+/// deviation of a joint from the line is 0.7 of it.
+Trajectory MakeDetour(const PlanRequest& request, const Eigen::VectorXd& scale,
+                      RandomStream& random);
 
 /// The request's fixed states, then what `plan` does at their times: an answer to another request
 /// as a guess for this one.

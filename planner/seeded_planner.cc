@@ -173,7 +173,7 @@ PlanAnswer SeededPlanner::DoPlan(const PlanRequest& request, PlanJudge& judge) c
 
 PlanAnswer SeededPlanner::TryAll(const PlanRequest& request, PlanJudge& judge) const {
   Search search(*this, request, judge);
-  Seeds seeds(request, gp_.num_detours);
+  Seeds seeds(request, gp_.num_detours, robot::ToleranceScale(robot()));
   std::optional<Candidate> taken_up = search.TakeUp();
   const int first = taken_up ? request.progress.next_seed % seeds.count() : 0;
   Candidate best =

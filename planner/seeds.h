@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+
 #include "sidestep/core/random.h"
 #include "sidestep/core/trajectory.h"
 #include "sidestep/planner/first_guess.h"
@@ -14,7 +16,8 @@ namespace sidestep::planner {
 class Seeds {
  public:
   /// Borrows the request.
-  Seeds(const PlanRequest& request, int num_detours);
+  /// @param scale of detours, as MakeDetour wants it.
+  Seeds(const PlanRequest& request, int num_detours, Eigen::VectorXd scale);
 
   int count() const;
   /// Something that is tried only where nothing else is free.
@@ -25,6 +28,7 @@ class Seeds {
  private:
   const PlanRequest& request_;
   int num_detours_, num_direct_;
+  Eigen::VectorXd scale_;
   RandomStream random_;
 };
 

@@ -9,6 +9,7 @@
 #include "sidestep/planner/clearance.h"
 #include "sidestep/planner/first_guess.h"
 #include "sidestep/planner/limit_use.h"
+#include "sidestep/robot/tolerance_scale.h"
 #include "tests/support/ball_field.h"
 #include "tests/support/planar_arm.h"
 
@@ -77,7 +78,7 @@ TEST(Detour, LeadsFromTheFixedStatesToTheGoalOffTheDirectLine) {
   const Eigen::Vector2d way = request.q_goal - request.q_start;
   double furthest_rad = 0;
   for (int i = 0; i < 20; ++i) {
-    const Trajectory motion = MakeDetour(request, random);
+    const Trajectory motion = MakeDetour(request, Eigen::Vector2d::Ones(), random);
     EXPECT_EQ(motion.q.leftCols(6), request.initial->q.leftCols(6));
     EXPECT_EQ(motion.v.leftCols(6), request.initial->v.leftCols(6));
     EXPECT_EQ(motion.q.col(30), request.q_goal);
@@ -94,9 +95,20 @@ TEST(Detour, LeadsFromTheFixedStatesToTheGoalOffTheDirectLine) {
 
 TEST(Detour, IsDecidedByItsStreamAlone) {
   RandomStream one(1, "test"), same(1, "test"), other(2, "test");
-  const Trajectory motion = MakeDetour(Request(), one);
-  EXPECT_EQ(motion.q, MakeDetour(Request(), same).q);
-  EXPECT_NE(motion.q, MakeDetour(Request(), other).q);
+  const Trajectory motion = MakeDetour(Request(), Eigen::Vector2d::Ones(), one);
+  EXPECT_EQ(motion.q, MakeDetour(Request(), Eigen::Vector2d::Ones(), same).q);
+  EXPECT_NE(motion.q, MakeDetour(Request(), Eigen::Vector2d::Ones(), other).q);
+}
+
+TEST(Detour, OfAJointThatSlidesIsAsLongAsATurnMovesAForearm) {
+  const auto made = [](double scale) {
+    RandomStream random(1, "test");
+    return MakeDetour(Request(), Eigen::Vector2d(scale, 1), random).q;
+  };
+  const Eigen::MatrixXd none = made(0), turns = made(1), slides = made(robot::kSlidePerTurn_m);
+  EXPECT_GT((turns - none).row(0).norm(), 0.1);
+  EXPECT_LT(((slides - none) - 0.25 * (turns - none)).row(0).norm(), 1e-12);
+  EXPECT_EQ(slides.row(1), turns.row(1));
 }
 
 // The planar arm stays stretched along x.

@@ -81,7 +81,7 @@ bool AreAlike(const Trajectory& a, const Trajectory& b) {
 
 // Of the request's seeds the one that `guess` is.
 int WhichSeed(const PlanRequest& request, const Trajectory& guess) {
-  Seeds seeds(request, 3);
+  Seeds seeds(request, 3, Eigen::Vector2d::Ones());
   for (int seed = 0; seed < seeds.count(); ++seed) {
     if (!seeds.IsDetour(seed) && AreAlike(seeds.Make(seed), guess)) return seed;
   }
@@ -93,7 +93,7 @@ TEST(SeededPlanner, TriesEachGuessOnceInOrderWhereNothingIsFree) {
   const PlanRequest request = Request(Everywhere());
   const PlanResult result = planner.Plan(request);
   ASSERT_EQ(planner.log.guesses.size(), 6u);
-  Seeds seeds(request, 3);
+  Seeds seeds(request, 3, Eigen::Vector2d::Ones());
   for (int seed = 0; seed < 6; ++seed) {
     EXPECT_TRUE(AreAlike(planner.log.guesses[static_cast<std::size_t>(seed)], seeds.Make(seed)))
         << seed;
@@ -129,7 +129,7 @@ TEST_P(ASearchCutShort, GoesOnWhereItStoppedUntilAllHasBeenTried) {
       request.initial->q.middleCols(1, 19).array() += 0.05;  // none of the direct ones
     }
     request.budget.iterations = GetParam();
-    const int num_seeds = Seeds(request, 3).count();
+    const int num_seeds = Seeds(request, 3, Eigen::Vector2d::Ones()).count();
     std::set<int> tried;
     int num_detours = 0, num_requests = 0;
     do {
