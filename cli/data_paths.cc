@@ -51,6 +51,10 @@ DataPaths FindDataPaths(const std::vector<std::string>& more_models) {
     if (!fs::is_directory(folder, error)) {
       throw InputError("--models", "'" + folder + "' is no folder");
     }
+    const ModelFolders models(folder);
+    if (models.NamesWith("robot.yaml").empty() && models.NamesWith("*.xml").empty()) {
+      throw InputError("--models", "'" + folder + "' holds no robot (NAME/robot.yaml)");
+    }
   }
   paths.more_models = more_models;
   return paths;

@@ -93,6 +93,7 @@ void SetArmature(const Eigen::VectorXd& armature, robot::ArmDescription* arm) {
 imports::RobotDetails DetailsOf(const robot::ArmDescription& arm, const sim::ArmSurvey& survey,
                                 const imports::SphereRequest& spheres) {
   imports::RobotDetails details;
+  Print("looking for collision spheres\n");  // it may take a minute
   details.spheres = imports::CoverArm(arm, spheres);
   details.capsules = CapsulesOf(arm);
   if (details.capsules.empty()) {
@@ -116,12 +117,10 @@ imports::RobotDetails DetailsOf(const robot::ArmDescription& arm, const sim::Arm
 }
 
 // The two files, held to each other.
-robot::RobotModel WriteRobot(const std::string& out, const robot::ArmDescription& arm,
+robot::RobotModel WriteRobot(const OutFolder& folder, const robot::ArmDescription& arm,
                              const imports::RobotDetails& details,
                              const imports::LinkPairs& without_contact) {
-  const std::string xml_name = arm.name + ".xml";
-  const OutFolder folder(out, {"robot.yaml", xml_name});
-  const std::string xml_path = folder.path() + "/" + xml_name;
+  const std::string xml_path = folder.path() + "/" + arm.name + ".xml";
   const std::string yaml_path = folder.path() + "/robot.yaml";
   WriteFile(xml_path, imports::MjcfText(arm, without_contact));
   WriteFile(yaml_path, imports::RobotYamlText(arm, details));
@@ -171,7 +170,7 @@ void ImportRobot(const RobotImport& request) {
   }
   SetArmature(survey.armature, &arm);
   const robot::RobotModel robot =
-      WriteRobot(request.out, arm, DetailsOf(arm, survey, request.spheres), without_contact);
+      WriteRobot(folder, arm, DetailsOf(arm, survey, request.spheres), without_contact);
   Print(
       "{}: {} joints, {} links, {} spheres, {} pairs of links to be kept apart (of {} that touch "
       "at some of {} configurations)\n",

@@ -1,5 +1,10 @@
 #pragma once
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <filesystem>
 #include <string>
 #include <system_error>
@@ -24,8 +29,9 @@ inline std::string MakeOutFolder(const std::string& out, const std::vector<std::
   return out;
 }
 
-/// The same for work that may be refused yet: what was made and holds nothing in the end goes
-/// again.
+/// The same for work that may be refused yet, and whose files belong together: what was made and
+/// holds nothing in the end goes again, and a second command with the same folder is refused as
+/// long as this one is at work.
 class OutFolder {
  public:
   OutFolder(const std::string& out, const std::vector<std::string>& files) : path_(out) {
@@ -37,24 +43,34 @@ class OutFolder {
     }
     try {
       MakeOutFolder(out, files);
+      Lock();
     } catch (...) {
-      RemoveEmpty();
+      Leave();
       throw;
     }
   }
-  ~OutFolder() { RemoveEmpty(); }
+  ~OutFolder() { Leave(); }
   OutFolder(const OutFolder&) = delete;
   OutFolder& operator=(const OutFolder&) = delete;
 
   const std::string& path() const { return path_; }
 
  private:
-  void RemoveEmpty() const {
+  // Where folders cannot be locked, as on some network file systems, goes on without.
+  void Lock() {
+    folder_ = open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (folder_ >= 0 && flock(folder_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+      throw InputError("--out", "'" + path_ + "': another command is writing here just now");
+    }
+  }
+  void Leave() const {
     std::error_code error;  // one that holds something stays
     for (const std::filesystem::path& folder : made_) std::filesystem::remove(folder, error);
+    if (folder_ >= 0) close(folder_);
   }
 
   std::string path_;
+  int folder_ = -1;                          // held open, and locked
   std::vector<std::filesystem::path> made_;  // innermost first
 };
 

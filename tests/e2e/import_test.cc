@@ -1,9 +1,12 @@
 // `sidestep import` of the URDFs of tests/data/urdf, as a person uses it: what it writes is the arm
 // that the URDF says, and plans and runs.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
+#include <sys/file.h>
 #include <tinyxml2.h>
+#include <unistd.h>
 
 #include <Eigen/Geometry>
 #include <filesystem>
@@ -369,6 +372,18 @@ TEST_F(ImportMjcf, MakesNoMoreSpheresThanItMay) {
   }
   EXPECT_THAT(Sidestep(kClasses, {"--tip", "tcp", "--velocity", "2", "--spheres", "5"}).err,
               testing::HasSubstr("--out: "));  // it is there
+}
+
+TEST_F(ImportMjcf, IsRefusedWhileAnotherCommandWritesThere) {
+  const std::string out = (folder_.path() / "arm").string();
+  fs::create_directories(out);
+  const int other = open(out.c_str(), O_RDONLY | O_DIRECTORY);
+  ASSERT_EQ(flock(other, LOCK_EX), 0);
+  const Finished finished = Sidestep(kClasses, {"--tip", "tcp", "--velocity", "2"});
+  close(other);
+  EXPECT_EQ(finished.exit_code, 2);
+  EXPECT_THAT(finished.err, testing::HasSubstr("another command is writing here just now"));
+  EXPECT_TRUE(fs::is_empty(out));
 }
 
 TEST_F(ImportMjcf, SaysWhatNeedsANewerMujoco) {

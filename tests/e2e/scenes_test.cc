@@ -121,6 +121,9 @@ TEST_F(Scenes, ARobotMayBeTheOnesOfAnyFolder) {
   const nlohmann::json by_name = Result("by_name");
   EXPECT_EQ(by_name["identity"]["models"], by_path["identity"]["models"]);
   Bad({"run", "named.yaml", "--models", "nowhere"}, "--models: 'nowhere' is no folder");
+  fs::create_directory(Path("empty"));
+  Bad({"run", "named.yaml", "--models", "empty"},
+      "--models: 'empty' holds no robot (NAME/robot.yaml)");
 
   // What a run is known by has the robot's files in it; its trace is drawn without them.
   std::ofstream(Path("robots/pointer/robot.yaml"), std::ios::app) << "# changed\n";
