@@ -74,7 +74,6 @@ bool IsOfMount(const robot::RobotModel& robot, const sim::RigidLink& link) {
 
 // Covers the robot's solids anew and writes the spheres as a variant of it.
 void WriteCover(const CheckRobotOptions& options, const CheckedRobot& checked) {
-  CheckCanWrite(options.cover_file);
   imports::CoverRequest request;
   request.cover_m = options.cover_mm.value_or(0) / 1e3;
   request.num_spheres = options.spheres;
@@ -87,6 +86,7 @@ void WriteCover(const CheckRobotOptions& options, const CheckedRobot& checked) {
   }
   std::vector<imports::LinkSolids> solids;
   for (const sim::RigidLink& link : links) solids.push_back(SolidsToCover(link));
+  Print("looking for collision spheres\n");  // it may take a minute
   const imports::RobotCover cover = imports::CoverLinks(solids, request);
 
   imports::Variant variant;
@@ -94,8 +94,8 @@ void WriteCover(const CheckRobotOptions& options, const CheckedRobot& checked) {
       fmt::format("{} spheres that cover the solids of {}: no point of them is more than {:.3g} mm",
                   cover.num_spheres(), fs::path(checked.mjcf).filename().string(),
                   1e3 * cover.cover_m),
-      fmt::format("outside of all spheres of its link, whose volume is {:.1f} % more than theirs.",
-                  100 * cover.excess()),
+      fmt::format("outside of all spheres of its link, whose volume is {:.1f} % {} than theirs.",
+                  100 * std::abs(cover.excess()), cover.excess() < 0 ? "less" : "more"),
       "Keys, units and conventions: docs/robots.md. Made by:", "  " + options.command};
   std::error_code error;
   const fs::path folder = fs::absolute(options.cover_file).parent_path();

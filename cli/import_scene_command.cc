@@ -52,12 +52,6 @@ imports::ImportedScene ReadMjcfScene(const std::string& path) {
   return scene;
 }
 
-// Names of files may hold line ends.
-std::string OneLine(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
-
 // Where a request has what becomes the task.
 std::map<std::string, int> LinesOf(const imports::ImportedRequest& request) {
   std::map<std::string, int> lines;

@@ -11,9 +11,9 @@
 
 #include "sidestep/bench/json_text.h"
 #include "sidestep/core/joined.h"
+#include "sidestep/core/model_name.h"
 #include "sidestep/core/number_text.h"
 #include "sidestep/robot/limit_keys.h"
-#include "sidestep/robot/model_name.h"
 #include "sidestep/sim/arm_file.h"
 #include "sidestep/sim/robot_agreement.h"
 #include "sidestep/sim/robot_configuration.h"
@@ -145,9 +145,9 @@ CheckedRobot LoadRobot(const std::string& name, const ModelFolders& models) {
   const bool is_path = name.find('/') != std::string::npos || name.ends_with(".yaml");
   std::string file = name;
   if (!name.ends_with(".yaml")) {
-    const std::string own = robot::ModelFolder(name);
+    const std::string own = ModelFolder(name);
     file = (is_path ? own : models.Find(own).value_or(own)) + "/" +
-           robot::DescriptionFile(robot::ModelVariant(name));
+           DescriptionFile(ModelVariant(name));
   }
   robot::RobotModel robot = is_path ? robot::RobotModel::FromFile(file, Pose())
                                     : robot::RobotModel::Load(models, name, Pose());

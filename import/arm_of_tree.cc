@@ -8,8 +8,8 @@
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
 #include "sidestep/core/number_text.h"
-#include "sidestep/import/convex_hull.h"
 #include "sidestep/import/joint_choice.h"
+#include "sidestep/import/triangle_mesh.h"
 
 namespace sidestep::imports {
 namespace {
@@ -121,11 +121,7 @@ class Maker {
   void Hold(const robot::TreeJoint& from, double position, robot::Joint* joint) {
     if (joint->kind == robot::JointKind::kFixed) return;
     if (position != 0) {
-      joint->X_PJ =
-          joint->X_PJ * (joint->kind == robot::JointKind::kPrismatic
-                             ? Pose::Translation(position * joint->axis_J)
-                             : Pose(Eigen::Quaterniond(Eigen::AngleAxisd(position, joint->axis_J)),
-                                    Eigen::Vector3d::Zero()));
+      joint->X_PJ = joint->X_PJ * robot::MotionOf(joint->kind, joint->axis_J, position);
     }
     joint->kind = robot::JointKind::kFixed;
     held_.push_back(from.name + " at " + ShortestText(position));
@@ -236,7 +232,7 @@ class Maker {
         if (hull != nullptr) {
           low = hull->vertices.rowwise().minCoeff();
           high = hull->vertices.rowwise().maxCoeff();
-          volume_m3 += VolumeOf_m3(*hull);
+          volume_m3 += SignedVolume_m3({hull->vertices, hull->triangles});
         } else {
           high = HalfExtents(std::get<Shape>(solid.form));
           low = -high;

@@ -15,10 +15,7 @@ std::vector<Pose> LinkPosesAt(const robot::ArmDescription& arm, const Eigen::Vec
     Pose X_JL;
     if (joint.kind != robot::JointKind::kFixed) {
       const double position = joint.multiplier * q(joint.coordinate) + joint.offset;
-      X_JL = joint.kind == robot::JointKind::kPrismatic
-                 ? Pose::Translation(position * joint.axis_J)
-                 : Pose(Eigen::Quaterniond(Eigen::AngleAxisd(position, joint.axis_J)),
-                        Eigen::Vector3d::Zero());
+      X_JL = robot::MotionOf(joint.kind, joint.axis_J, position);
     }
     poses.push_back(X_BP * joint.X_PJ * X_JL);
   }

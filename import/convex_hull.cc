@@ -117,17 +117,6 @@ std::optional<HullSolid> ConvexHullOf(const Matrix3Xd& points) {
   return hull;
 }
 
-double VolumeOf_m3(const HullSolid& hull) {
-  double six_volumes = 0;
-  const Vector3d about = hull.vertices.col(0);
-  for (const auto& t : hull.triangles.colwise()) {
-    const Vector3d a = hull.vertices.col(t(0)) - about;
-    six_volumes +=
-        a.dot((hull.vertices.col(t(1)) - about).cross(Vector3d(hull.vertices.col(t(2)) - about)));
-  }
-  return six_volumes / 6;
-}
-
 SimplerHull Simplify(const HullSolid& hull, int max_vertices) {
   if (hull.vertices.cols() <= max_vertices) return {hull, 0};
   std::vector<Index> chosen;

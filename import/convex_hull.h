@@ -13,9 +13,6 @@ namespace sidestep::imports {
 std::optional<robot::HullSolid> ConvexHullOf(const Eigen::Matrix3Xd& points);
 inline constexpr double kFlat_m = 1e-4;
 
-/// The volume inside [m^3].
-double VolumeOf_m3(const robot::HullSolid& hull);
-
 /// A hull of fewer corners, and how far the left out ones stand outside of it at most [m].
 struct SimplerHull {
   robot::HullSolid hull;

@@ -5,10 +5,10 @@
 
 namespace sidestep::imports {
 
-/// The convex hull of points, of at most `max_vertices` corners, each to the micrometre as it is
+/// A convex hull with at most `max_vertices` of its corners, each to the micrometre as it is
 /// written; none if they span no solid.
 /// @param note gets what a person should know of it, or nothing: "has a hull of ...".
-std::optional<robot::HullSolid> FinishedHull(const Eigen::Matrix3Xd& points, int max_vertices,
+std::optional<robot::HullSolid> FinishedHull(const robot::HullSolid& whole, int max_vertices,
                                              std::string* note);
 
 /// Makes the hulls of a tree whose meshes hold vertices alone. @throws InputError.

@@ -1,5 +1,8 @@
 #include "sidestep/import/link_spheres.h"
 
+#include <algorithm>
+
+#include "sidestep/core/input_error.h"
 #include "sidestep/import/sphere_cover.h"
 
 namespace sidestep::imports {
@@ -29,6 +32,12 @@ std::vector<robot::CollisionSphere> CoverArm(const robot::ArmDescription& arm,
   CoverRequest covers;
   covers.cover_m = request.cover_m;
   covers.num_spheres = request.num_spheres;
+  const auto num_solid = std::count_if(arm.links.begin(), arm.links.end(),
+                                       [](const auto& link) { return !link.solids.empty(); });
+  if (request.num_spheres > 0 && request.num_spheres < num_solid) {
+    throw InputError("--spheres",
+                     "must be at least one a link with solids: " + std::to_string(num_solid));
+  }
   const RobotCover cover = CoverLinks(links, covers);
   std::vector<robot::CollisionSphere> spheres;
   for (std::size_t link = 0; link < links.size(); ++link) {

@@ -14,7 +14,8 @@ struct SphereRequest {
 };
 
 /// Collision spheres of an arm, link by link, as CoverLinks finds them (sphere_cover.h).
-/// @throws InputError for a mesh that is not closed.
+/// @throws InputError for a mesh that is not closed, and of --spheres for fewer than links with
+/// solids.
 std::vector<robot::CollisionSphere> CoverArm(const robot::ArmDescription& arm,
                                              const SphereRequest& request);
 

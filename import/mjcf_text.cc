@@ -5,6 +5,7 @@
 
 #include "sidestep/core/convex_polytope.h"
 #include "sidestep/core/joined.h"
+#include "sidestep/core/markup.h"
 #include "sidestep/core/number_text.h"
 #include "sidestep/import/arm_pose.h"
 #include "sidestep/import/robot_files.h"
@@ -15,29 +16,6 @@ namespace {
 std::string Number(double value) { return ShortestText(value + 0.0); }  // no -0
 
 std::string Numbers(const Eigen::VectorXd& values) { return Joined(values, " ", &Number); }
-
-std::string Escaped(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
-}
 
 // In a comment two dashes are not allowed.
 std::string InComment(std::string text) {
@@ -58,7 +36,7 @@ std::string PlaceText(const Pose& X) {
 }
 
 std::string MeshName(const robot::ArmLink& link, std::size_t solid) {
-  return Escaped(link.name) + "/" + std::to_string(solid);
+  return EscapeMarkup(link.name) + "/" + std::to_string(solid);
 }
 
 struct SizeText {
@@ -97,7 +75,7 @@ class Writer {
     text_ = "<!-- " + InComment(arm_.name) + ", made of " + InComment(arm_.source) +
             " by sidestep import, which has all figures\n     that have no other source beside "
             "them. Its licence is that of what it was made of. -->\n";
-    Line(0, "<mujoco model=\"" + Escaped(arm_.name) + "\">");
+    Line(0, "<mujoco model=\"" + EscapeMarkup(arm_.name) + "\">");
     Line(1, "<compiler angle=\"radian\" inertiafromgeom=\"false\"/>");
     Line(1, "<default>");
     Line(2, "<geom group=\"1\" rgba=\"0.75 0.77 0.8 1\"/>");
@@ -140,7 +118,7 @@ class Writer {
     const robot::ArmLink& link = arm_.LinkOf(number);
     std::string place;
     if (number >= 0) place = PlaceText(arm_.joints[static_cast<std::size_t>(number)].X_PJ);
-    Line(depth, "<body name=\"" + Escaped(link.name) + "\"" + place + ">");
+    Line(depth, "<body name=\"" + EscapeMarkup(link.name) + "\"" + place + ">");
     if (link.inertia) {
       const Eigen::Matrix3d& I = link.inertia->I_C;
       Eigen::Matrix<double, 6, 1> parts;
@@ -160,7 +138,7 @@ class Writer {
   void WriteJoint(std::size_t i, int depth) {
     const robot::Joint& joint = arm_.joints[i];
     if (joint.kind == robot::JointKind::kFixed) return;
-    std::string line = "<joint name=\"" + Escaped(joint.name) + "\"";
+    std::string line = "<joint name=\"" + EscapeMarkup(joint.name) + "\"";
     if (joint.kind == robot::JointKind::kPrismatic) line += " type=\"slide\"";
     line += " axis=\"" + Numbers(joint.axis_J) + "\"";
     if (!IsMimic(i)) {
@@ -193,8 +171,8 @@ class Writer {
     if (without_contact.empty()) return;
     Line(1, "<contact>");
     for (const robot::LinkPair& pair : without_contact) {
-      Line(2, "<exclude body1=\"" + Escaped(arm_.LinkOf(pair.first).name) + "\" body2=\"" +
-                  Escaped(arm_.LinkOf(pair.second).name) + "\"/>");
+      Line(2, "<exclude body1=\"" + EscapeMarkup(arm_.LinkOf(pair.first).name) + "\" body2=\"" +
+                  EscapeMarkup(arm_.LinkOf(pair.second).name) + "\"/>");
     }
     Line(1, "</contact>");
   }
@@ -216,9 +194,10 @@ class Writer {
       if (is_first) Line(1, "<equality>");
       is_first = false;
       const robot::Joint& joint = arm_.joints[i];
-      Line(2, "<joint joint1=\"" + Escaped(joint.name) + "\" joint2=\"" +
-                  Escaped(arm_.joints[LeaderOf(i)].name) + "\" polycoef=\"" + Number(joint.offset) +
-                  " " + Number(joint.multiplier) + " 0 0 0\" solref=\"0.005 1\"/>");
+      Line(2, "<joint joint1=\"" + EscapeMarkup(joint.name) + "\" joint2=\"" +
+                  EscapeMarkup(arm_.joints[LeaderOf(i)].name) + "\" polycoef=\"" +
+                  Number(joint.offset) + " " + Number(joint.multiplier) +
+                  " 0 0 0\" solref=\"0.005 1\"/>");
     }
     if (!is_first) Line(1, "</equality>");
   }
@@ -228,8 +207,8 @@ class Writer {
     for (std::size_t i = 0; i < arm_.joints.size(); ++i) {
       const robot::Joint& joint = arm_.joints[i];
       if (joint.coordinate < 0 || IsMimic(i)) continue;
-      std::string line =
-          "<motor name=\"" + Escaped(joint.name) + "\" joint=\"" + Escaped(joint.name) + "\"";
+      std::string line = "<motor name=\"" + EscapeMarkup(joint.name) + "\" joint=\"" +
+                         EscapeMarkup(joint.name) + "\"";
       const double most = arm_.limits[static_cast<std::size_t>(joint.coordinate)].torque_max;
       if (std::isfinite(most)) {
         line += " ctrllimited=\"true\" ctrlrange=\"" + Number(-most) + " " + Number(most) + "\"";

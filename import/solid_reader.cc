@@ -11,6 +11,7 @@
 #include "sidestep/import/hull_finish.h"
 #include "sidestep/import/mesh_file.h"
 #include "sidestep/import/mesh_uri.h"
+#include "sidestep/import/triangle_mesh.h"
 #include "sidestep/import/urdf_pose.h"
 
 namespace sidestep::imports {
@@ -90,12 +91,12 @@ class Reader {
     const std::optional<robot::HullSolid> whole = ConvexHullOf(points);
     if (!whole) Fail(name + " spans no solid: it is flat, to 0.1 mm");
     const double inside_m3 = std::abs(SignedVolume_m3(loaded.mesh) * scale.prod());
-    const double more = VolumeOf_m3(*whole) / inside_m3 - 1;
+    const double more = SignedVolume_m3({whole->vertices, whole->triangles}) / inside_m3 - 1;
     if (more > 0.1 && loaded.notes.empty()) {
       note(fmt::format("is not convex: its hull holds {:.0f} % more than it does", 100 * more));
     }
     std::string hull_note;
-    const auto hull = FinishedHull(points, choices_.max_hull_vertices, &hull_note);
+    const auto hull = FinishedHull(*whole, choices_.max_hull_vertices, &hull_note);
     if (!hull) Fail(name + " spans no solid: it is flat, to 0.1 mm");
     if (!hull_note.empty()) note(hull_note);
     solid->form = *hull;

@@ -6,10 +6,11 @@ namespace sidestep::imports {
 
 double SignedVolume_m3(const TriangleMesh& mesh) {
   double six_volumes = 0;
-  for (Eigen::Index i = 0; i < mesh.triangles.cols(); ++i) {
-    const Eigen::Vector3i corners = mesh.triangles.col(i);
-    six_volumes += mesh.vertices.col(corners[0])
-                       .dot(mesh.vertices.col(corners[1]).cross(mesh.vertices.col(corners[2])));
+  for (const auto& t : mesh.triangles.colwise()) {
+    const auto corner = [&](int k) -> Eigen::Vector3d {  // seen from one of them: far off it rounds
+      return mesh.vertices.col(t(k)) - mesh.vertices.col(0);
+    };
+    six_volumes += corner(0).dot(corner(1).cross(corner(2)));
   }
   return six_volumes / 6;
 }

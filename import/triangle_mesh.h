@@ -11,7 +11,7 @@ struct TriangleMesh {
 };
 
 /// The volume inside a closed mesh [m^3]: negative if it is inside out. By the divergence theorem,
-/// the sum of the signed tetrahedra between its triangles and the origin.
+/// the sum of the signed tetrahedra between its triangles and one point.
 double SignedVolume_m3(const TriangleMesh& mesh);
 
 }  // namespace sidestep::imports

@@ -72,6 +72,33 @@ void ForEachTriangle(const std::vector<TriangleMesh>& meshes, const Use& use) {
   }
 }
 
+// Calls visit(piece, the sphere that it sticks out of least) for the pieces of triangles that may
+// stick out by more than `cover_m`, cut until no edge is longer than `longest_m`. It may change the
+// spheres.
+template <class Visit>
+void ForEachPieceOutside(const std::vector<TriangleMesh>& meshes,
+                         const std::vector<CoverSphere>& spheres, double cover_m, double longest_m,
+                         const Visit& visit) {
+  std::vector<Corners> pieces;
+  ForEachTriangle(meshes, [&](const Corners& corners) {
+    pieces.assign(1, corners);
+    while (!pieces.empty()) {
+      const Corners piece = pieces.back();
+      pieces.pop_back();
+      const Nearest nearest = FindNearest(spheres, piece);
+      if (nearest.out_m <= cover_m) continue;
+      const auto [edge, length] = LongestEdge(piece);
+      if (length > longest_m) {
+        const auto halves = Halves(piece, edge);
+        pieces.push_back(halves.first);
+        pieces.push_back(halves.second);
+      } else {
+        visit(piece, nearest);
+      }
+    }
+  });
+}
+
 }  // namespace
 
 Uncovered FindUncovered(const std::vector<TriangleMesh>& meshes,
@@ -122,51 +149,23 @@ Eigen::Matrix3Xd FindOutside(const std::vector<TriangleMesh>& meshes,
                              const std::vector<CoverSphere>& spheres, double cover_m,
                              double apart_m) {
   PointThinner thinner(apart_m);
-  std::vector<Corners> pieces;
-  ForEachTriangle(meshes, [&](const Corners& corners) {
-    pieces.assign(1, corners);
-    while (!pieces.empty()) {
-      const Corners piece = pieces.back();
-      pieces.pop_back();
-      if (FindNearest(spheres, piece).out_m <= cover_m) continue;
-      const auto [edge, length] = LongestEdge(piece);
-      if (length > apart_m) {
-        const auto halves = Halves(piece, edge);
-        pieces.push_back(halves.first);
-        pieces.push_back(halves.second);
-        continue;
-      }
-      const auto worst = std::max_element(
-          piece.begin(), piece.end(),
-          [&](const auto& a, const auto& b) { return OutAt(spheres, a) < OutAt(spheres, b); });
-      if (OutAt(spheres, *worst) > cover_m) thinner.Add(*worst);
-    }
+  ForEachPieceOutside(meshes, spheres, cover_m, apart_m, [&](const Corners& piece, const Nearest&) {
+    const auto worst = std::max_element(
+        piece.begin(), piece.end(),
+        [&](const auto& a, const auto& b) { return OutAt(spheres, a) < OutAt(spheres, b); });
+    if (OutAt(spheres, *worst) > cover_m) thinner.Add(*worst);
   });
   return thinner.Points();
 }
 
 void GrowToCover(const std::vector<TriangleMesh>& meshes, double cover_m, double steps_per_m,
                  std::vector<CoverSphere>* spheres) {
-  std::vector<Corners> pieces;
-  ForEachTriangle(meshes, [&](const Corners& corners) {
-    pieces.assign(1, corners);
-    while (!pieces.empty()) {
-      const Corners piece = pieces.back();
-      pieces.pop_back();
-      const Nearest nearest = FindNearest(*spheres, piece);
-      if (nearest.out_m <= cover_m) continue;
-      const auto [edge, length] = LongestEdge(piece);
-      if (length * steps_per_m > 1) {
-        const auto halves = Halves(piece, edge);
-        pieces.push_back(halves.first);
-        pieces.push_back(halves.second);
-        continue;
-      }
-      CoverSphere& sphere = (*spheres)[nearest.sphere];
-      double steps = std::ceil((sphere.radius_m + nearest.out_m - cover_m) * steps_per_m);
-      for (; OutOf(sphere, piece) > cover_m; steps += 1) sphere.radius_m = steps / steps_per_m;
-    }
-  });
+  const auto grow = [&](const Corners& piece, const Nearest& nearest) {
+    CoverSphere& sphere = (*spheres)[nearest.sphere];
+    double steps = std::ceil((sphere.radius_m + nearest.out_m - cover_m) * steps_per_m);
+    for (; OutOf(sphere, piece) > cover_m; steps += 1) sphere.radius_m = steps / steps_per_m;
+  };
+  ForEachPieceOutside(meshes, *spheres, cover_m, 1 / steps_per_m, grow);
 }
 
 }  // namespace sidestep::imports

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/markup.h"
 #include "sidestep/core/utf8.h"
 
 namespace sidestep::bench {
@@ -25,28 +26,7 @@ figcaption { color: #555; font-size: 0.9rem; }
 )";
 
 // What HTML takes as it stands.
-std::string Escape(const std::string& text) {
-  std::string escaped;
-  for (const char c : EscapeInvalidUtf8(text)) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
-}
+std::string Escape(const std::string& text) { return EscapeMarkup(EscapeInvalidUtf8(text)); }
 
 // As a picture of its own and not as part of the page: then names inside two pictures cannot clash.
 std::string DataUri(const std::string& svg) {

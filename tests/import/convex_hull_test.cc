@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "sidestep/core/random.h"
+#include "sidestep/import/triangle_mesh.h"
 
 namespace sidestep::imports {
 namespace {
@@ -42,7 +43,7 @@ TEST(ConvexHull, OfACubeIsItsCornersWhateverLiesWithin) {
   ASSERT_TRUE(hull.has_value());
   EXPECT_EQ(hull->vertices.cols(), 8);
   EXPECT_EQ(hull->triangles.cols(), 12);
-  EXPECT_NEAR(VolumeOf_m3(*hull), 8, 1e-9);
+  EXPECT_NEAR(SignedVolume_m3({hull->vertices, hull->triangles}), 8, 1e-9);
 }
 
 TEST(ConvexHull, HoldsEveryPointAndHasOnlyCorners) {
@@ -54,7 +55,7 @@ TEST(ConvexHull, HoldsEveryPointAndHasOnlyCorners) {
     for (const auto& p : points.colwise()) EXPECT_LT(HeightOver(*hull, p), 1e-12);
     // Euler: a closed surface of triangles.
     EXPECT_EQ(hull->triangles.cols(), 2 * hull->vertices.cols() - 4);
-    EXPECT_GT(VolumeOf_m3(*hull), 0);
+    EXPECT_GT(SignedVolume_m3({hull->vertices, hull->triangles}), 0);
   }
 }
 
