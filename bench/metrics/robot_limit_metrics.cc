@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -98,7 +99,11 @@ std::string TellTrips(const std::map<std::string, double>& metrics) {
   for (const TripMetric& metric : TrippedBy(metrics)) {
     words += (words.empty() ? "" : ", ") + std::string(metric.words);
   }
-  return words.empty() ? "no" : words;
+  if (!words.empty()) return words;
+  const bool is_known = std::all_of(
+      std::begin(kTripMetrics), std::end(kTripMetrics),
+      [&metrics](const TripMetric& metric) { return std::isfinite(metrics.at(metric.name)); });
+  return is_known ? "no" : "not by what is known";
 }
 
 }  // namespace sidestep::bench

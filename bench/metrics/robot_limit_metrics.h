@@ -39,7 +39,8 @@ inline constexpr TripMetric kTripMetrics[] = {
 
 /// Those of them that reach 1.
 std::vector<TripMetric> TrippedBy(const std::map<std::string, double>& metrics);
-/// In words: "velocity, tool reflex"; "no" if there are none.
+/// In words: "velocity, tool reflex"; if there are none, "no", or "not by what is known" where some
+/// of the robot's limits are not.
 std::string TellTrips(const std::map<std::string, double>& metrics);
 
 }  // namespace sidestep::bench

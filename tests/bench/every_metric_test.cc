@@ -207,7 +207,9 @@ TEST(Metrics, SayWhatWouldHaveTripped) {
   std::map<std::string, double> metrics;
   for (const TripMetric& metric : kTripMetrics) metrics[metric.name] = 0.999;
   EXPECT_TRUE(TrippedBy(metrics).empty());
+  EXPECT_EQ(TellTrips(metrics), "no");
   metrics["jerk_use"] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(TellTrips(metrics), "not by what is known");
   metrics["commanded_torque_rate_use"] = 1;
   ASSERT_EQ(TrippedBy(metrics).size(), 1u);
   EXPECT_STREQ(TrippedBy(metrics).front().words, "torque rate");
