@@ -146,7 +146,8 @@ void ImportRobot(const RobotImport& request) {
                        "'" + path.string() + "' is there already; --overwrite replaces it");
     }
   }
-  const OutFolder folder(request.out, {"robot.yaml", xml_name});  // before the work is done
+  OutFolder folder(request.out, {"robot.yaml", xml_name});  // before the work is done
+  folder.Lock();
   imports::ImportedArm imported = imports::ArmOfTree(ReadTree(request.file, choices), choices);
   robot::ArmDescription& arm = imported.arm;
   for (const std::string& note : imported.notes) Print("{}\n", note);

@@ -29,9 +29,8 @@ inline std::string MakeOutFolder(const std::string& out, const std::vector<std::
   return out;
 }
 
-/// The same for work that may be refused yet, and whose files belong together: what was made and
-/// holds nothing in the end goes again, and a second command with the same folder is refused as
-/// long as this one is at work.
+/// The same for work that may be refused yet: what was made and holds nothing in the end goes
+/// again.
 class OutFolder {
  public:
   OutFolder(const std::string& out, const std::vector<std::string>& files) : path_(out) {
@@ -43,7 +42,6 @@ class OutFolder {
     }
     try {
       MakeOutFolder(out, files);
-      Lock();
     } catch (...) {
       Leave();
       throw;
@@ -55,14 +53,17 @@ class OutFolder {
 
   const std::string& path() const { return path_; }
 
- private:
-  // Where folders cannot be locked, as on some network file systems, goes on without.
+  /// For files that are worth nothing one without the other: as long as this lives, nobody else
+  /// gets the lock. Where folders cannot be locked, as on some network file systems, goes on
+  /// without. @throws InputError if another command has it.
   void Lock() {
     folder_ = open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (folder_ >= 0 && flock(folder_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       throw InputError("--out", "'" + path_ + "': another command is writing here just now");
     }
   }
+
+ private:
   void Leave() const {
     std::error_code error;  // one that holds something stays
     for (const std::filesystem::path& folder : made_) std::filesystem::remove(folder, error);
@@ -70,7 +71,7 @@ class OutFolder {
   }
 
   std::string path_;
-  int folder_ = -1;                          // held open, and locked
+  int folder_ = -1;                          // open while it is locked
   std::vector<std::filesystem::path> made_;  // innermost first
 };
 

@@ -19,6 +19,9 @@ constexpr int kTicksPerSecond = 1000;
 constexpr std::size_t kLogLength = 4096;
 // Identical commands before the end of a motion: a real arm has settled by then.
 constexpr int kTicksToSettle = 250;
+// Twice the 20 ms without a command after which a Panda ends a motion.
+constexpr std::chrono::milliseconds kLongerThanARobotWaits(40);
+constexpr int kSilentAt = 20;  // the first answers may come too late to count
 
 // What Franka's documentation leaves for an answer (frankaemika/docs, requirements.rst).
 constexpr double kSlowAnswer_s = 300e-6;
@@ -169,6 +172,8 @@ Command PandaRobot::Answer(const RobotSnapshot& state, int elapsed_ms) {
   const auto tick = static_cast<std::int64_t>(state.time_ms - first_ms_);
   seen_.Append({tick, VectorOf(state.q), VectorOf(state.dq)});
   if (options_.lockstep) {
+    // Who does not wait gives up soon after the beginning, not just where a plan takes long.
+    if (++num_asked_ == kSilentAt) std::this_thread::sleep_for(kLongerThanARobotWaits);
     for (std::int64_t allowed = allowed_ticks_; allowed <= tick; allowed = allowed_ticks_) {
       allowed_ticks_.wait(allowed);
     }

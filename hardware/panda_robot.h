@@ -91,7 +91,7 @@ class PandaRobot final : public robot::RobotInterface {
 
   // Of the thread that answers.
   std::uint64_t first_ms_ = 0;
-  int ticks_at_rest_ = 0;
+  int num_asked_ = 0, ticks_at_rest_ = 0;
 
   // Of the other.
   JointState latest_;
