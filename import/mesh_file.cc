@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/markup.h"
 #include "sidestep/core/text_file.h"
 #include "sidestep/import/isolated.h"
 
@@ -148,7 +149,7 @@ std::string UpAxisOf(const std::string& path) {
   const std::string text = ReadTextFile(path, kMaxBytes);
   tinyxml2::XMLDocument document;
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-    throw InputError(path, document.ErrorLineNum(), "", document.ErrorName());
+    throw XmlFault(path, document.ErrorLineNum(), document.ErrorName());
   }
   for (const tinyxml2::XMLNode* node = document.FirstChild(); node != nullptr;
        node = node->NextSibling()) {

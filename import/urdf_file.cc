@@ -12,6 +12,7 @@
 
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
+#include "sidestep/core/markup.h"
 #include "sidestep/core/text_file.h"
 #include "sidestep/import/urdfdom_messages.h"
 
@@ -331,7 +332,7 @@ UrdfFile ReadUrdf(const std::string& path) {
 UrdfFile ParseUrdf(const std::string& text, const std::string& path) {
   tinyxml2::XMLDocument document;
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-    throw InputError(path, document.ErrorLineNum(), "", document.ErrorName());
+    throw XmlFault(path, document.ErrorLineNum(), document.ErrorName());
   }
   UrdfFile file;
   file.path = path;

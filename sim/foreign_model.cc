@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/markup.h"
 #include "sidestep/core/text_file.h"
 #include "sidestep/sim/mesh_files.h"
 #include "sidestep/sim/mesh_vertices.h"
@@ -172,7 +173,7 @@ std::string ReadModelFile(const std::string& path) {
 const XMLElement& ParseModel(const std::string& xml, const std::string& name,
                              tinyxml2::XMLDocument* document) {
   if (document->Parse(xml.data(), xml.size()) != tinyxml2::XML_SUCCESS) {
-    throw InputError(name, document->ErrorLineNum(), "", document->ErrorName());
+    throw XmlFault(name, document->ErrorLineNum(), document->ErrorName());
   }
   const XMLElement* const root = document->RootElement();
   if (root == nullptr || std::string_view(root->Name()) != "mujoco") {

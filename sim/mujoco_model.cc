@@ -5,6 +5,7 @@
 #include <regex>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/markup.h"
 
 namespace sidestep::sim {
 namespace {
@@ -29,8 +30,9 @@ InputError ErrorOf(const std::string& file, const std::string& message) {
   for (const std::regex* const form : {&kElement, &kObject, &kSyntax}) {
     std::smatch parts;
     if (!std::regex_search(message, parts, *form)) continue;
-    const std::string line = parts[3].str().substr(0, 9);
-    return InputError(file, std::stoi(line), parts[2], parts[1]);
+    const int line = std::stoi(parts[3].str().substr(0, 9));
+    if (form == &kSyntax) return XmlFault(file, line, parts[1].str());
+    return InputError(file, line, parts[2], parts[1]);
   }
   return InputError(file, message);
 }
@@ -47,6 +49,7 @@ void InstallHandlers() {
 }  // namespace
 
 MujocoModelPtr LoadMujocoModel(const std::string& xml, const std::string& name) {
+  if (xml.empty()) throw InputError(name, "is empty");
   InstallHandlers();
   const auto vfs = std::make_unique<mjVFS>();  // 2 MB: not for the stack
   mj_defaultVFS(vfs.get());

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/markup.h"
 #include "sidestep/core/text_file.h"
 #include "sidestep/sim/mesh_vertices.h"
 
@@ -45,7 +46,7 @@ class WorldChecker {
     const std::string xml = ReadTextFile(path, kMostBytes);
     tinyxml2::XMLDocument document;
     if (document.Parse(xml.data(), xml.size()) != tinyxml2::XML_SUCCESS) {
-      throw InputError(path, document.ErrorLineNum(), "", document.ErrorName());
+      throw XmlFault(path, document.ErrorLineNum(), document.ErrorName());
     }
     const XMLElement* const root = document.RootElement();
     if (root == nullptr || (is_first && std::string_view(root->Name()) != "mujoco")) {

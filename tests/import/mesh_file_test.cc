@@ -120,7 +120,7 @@ TEST_F(MeshFile, IsRefusedIfItIsNone) {
   EXPECT_THAT(MessageOf(kParts), testing::HasSubstr("is no file"));
   EXPECT_THAT(MessageOf(Write("a.stp", "ISO")), testing::HasSubstr("must be an STL, OBJ or DAE"));
   EXPECT_THAT(MessageOf(Write("a.stl", "")), testing::HasSubstr("is no mesh"));
-  EXPECT_THAT(MessageOf(Write("a.dae", "<COLLADA>")), testing::HasSubstr("XML_ERROR"));
+  EXPECT_THAT(MessageOf(Write("a.dae", "<COLLADA>")), testing::HasSubstr("is no well-formed XML"));
   EXPECT_THAT(MessageOf(Write("b.dae", "<!DOCTYPE a [<!ENTITY b \"c\">]><COLLADA/>")),
               testing::HasSubstr("is not taken in a mesh"));
   EXPECT_THAT(MessageOf(Write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n")),

@@ -30,7 +30,9 @@ TEST(MujocoModel, SaysAtItsLineWhatIsWrongWithAText) {
        "thing.xml:4: a: repeated name in body array, position 3"},
       {"<mujoco>\n<worldbody>\n<body>\n<joint/></body></worldbody></mujoco>",
        "thing.xml:3: mass and inertia of moving bodies must be larger than mjMINVAL"},
-      {"<mujoco>\n<worldbody></mujoco>", "thing.xml:2: XML_ERROR_MISMATCHED_ELEMENT"},
+      {"", "thing.xml: is empty"},
+      {"", "thing.xml: is empty"},
+      {"<mujoco>\n<worldbody></mujoco>", "thing.xml:2: is no well-formed XML: mismatched element"},
   };
   for (const auto& c : cases) {
     EXPECT_THAT([&] { LoadMujocoModel(c.text, "thing.xml"); },

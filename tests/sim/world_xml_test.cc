@@ -263,7 +263,7 @@ class BrokenModel : public testing::Test {
 
 TEST_F(BrokenModel, IsRefusedWithItsLine) {
   EXPECT_EQ(MessageFor("<mujoco>\n<worldbody>\n</mujoco>"),
-            "/arm/arm.xml:2: XML_ERROR_MISMATCHED_ELEMENT");
+            "/arm/arm.xml:2: is no well-formed XML: mismatched element");
   EXPECT_EQ(MessageFor("<robot/>"), "/arm/arm.xml:1: must be an MJCF file, whose root is <mujoco>");
   EXPECT_EQ(
       MessageFor("<mujoco>\n<asset>\n<texture file='a.png'/></asset></mujoco>"),
