@@ -9,6 +9,7 @@
 #include "sidestep/core/random.h"
 #include "sidestep/planner/clearance.h"
 #include "sidestep/planner/first_guess.h"
+#include "sidestep/planner/tool_speed.h"
 #include "sidestep/robot/tolerance_scale.h"
 
 namespace sidestep::bench {
@@ -41,6 +42,8 @@ FreePath SearchFreePath(const scenarios::Scenario& scenario, const robot::RobotM
     const planner::PlanResult result = planner->Plan(request);
     const std::optional<Trajectory>& motion = result.trajectory;
     if (!motion || result.status == planner::PlanStatus::kShortOfGoal) continue;
+    if (planner::GreatestToolSpeed_m_s(robot, *motion, 0) > scenario.safety.tool_speed_m_s)
+      continue;
     const EpisodeTime begin(0), end(motion->t_s(request.num_states - 1) + kAfterGoal_s);
     const double clearance_m =
         planner::MeasureClearance(robot, field, *motion, begin, begin, end, kJudgeStep_s).least_m;

@@ -82,6 +82,11 @@ planner::PlannerSettings SettingsOf(const scenarios::Scenario& scenario) {
   settings.position_limits = scenario.position_limits;
   settings.velocity_limits = scenario.velocity_limits;
   settings.acceleration_limits = scenario.acceleration_limits;
+  // The supervisor slows down what comes near the speed at which it stops.
+  constexpr double kToolShare = 0.9;
+  if (scenario.safety.profile == scenarios::SafetyProfile::kLab) {
+    settings.tool_speed_m_s = kToolShare * scenario.safety.tool_speed_m_s;
+  }
   return settings;
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "sidestep/core/goal.h"
+#include "sidestep/planner/tool_speed.h"
 #include "sidestep/robot/tolerance_scale.h"
 
 namespace sidestep::planner {
@@ -61,6 +62,12 @@ double Planner::DirectTime_s(const Eigen::VectorXd& q_start, const Eigen::Vector
     if (settings_.acceleration_limits) {
       time_s = std::max(time_s, std::sqrt(6 * way / (settings_.acceleration_scale * joint.a_max)));
     }
+  }
+  if (std::isfinite(settings_.tool_speed_m_s)) {
+    Trajectory second = {Eigen::Vector2d(0, 1), Eigen::MatrixXd(q_start.size(), 2),
+                         Eigen::MatrixXd::Zero(q_start.size(), 2)};
+    second.q << q_start, q_goal;
+    time_s = std::max(time_s, GreatestToolSpeed_m_s(robot_, second, 0) / settings_.tool_speed_m_s);
   }
   return time_s;
 }

@@ -85,8 +85,9 @@ class Planner {
   PlanResult Plan(const PlanRequest& request) const;
 
   /// The least time [s] in which the direct motion from rest to rest (MakeDirectMotion) keeps the
-  /// limits of velocity and acceleration that the settings ask for. A shorter horizon would ask for
-  /// what cannot be had. @param q_start, q_goal shape n.
+  /// limits of velocity and acceleration that the settings ask for, and their speed of the tool to
+  /// a thousandth. A shorter horizon would ask for what cannot be had.
+  /// @param q_start, q_goal shape n.
   double DirectTime_s(const Eigen::VectorXd& q_start, const Eigen::VectorXd& q_goal) const;
 
   virtual PlannerCapabilities capabilities() const { return {}; }

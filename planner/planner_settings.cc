@@ -22,6 +22,7 @@ void CheckPlannerSettings(const PlannerSettings& settings) {
   Require(std::isfinite(settings.epsilon_m) && settings.epsilon_m >= 0, "epsilon_m must be >= 0");
   Require(IsFraction(settings.velocity_scale), "velocity_scale must be in (0, 1]");
   Require(IsFraction(settings.acceleration_scale), "acceleration_scale must be in (0, 1]");
+  Require(settings.tool_speed_m_s > 0, "tool_speed_m_s must be > 0");
 }
 
 double LargestShare(const LimitUse& use, const PlannerSettings& settings) {

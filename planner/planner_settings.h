@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "sidestep/planner/limit_use.h"
 
 namespace sidestep::planner {
@@ -15,6 +17,10 @@ struct PlannerSettings {
   /// libfranka's rate limits away.
   double velocity_scale = 0.95;
   double acceleration_scale = 0.5;
+  /// How fast the tool may be [m/s] > 0, for example because a supervisor slows down what is
+  /// faster. No cost knows it, but nobody asks for a motion in less time than the direct one takes
+  /// so.
+  double tool_speed_m_s = std::numeric_limits<double>::infinity();
 };
 
 /// @throws std::invalid_argument, naming the setting, for one out of range.

@@ -64,6 +64,10 @@ ItemFinding NothingRun(const std::string& why) { return {ItemVerdict::kNotRun, w
 
 bool IsMoving(const Eigen::VectorXd& v) { return v.norm() > kMoving_rad_s; }
 
+bool IsBase(const robot::RobotModel& robot, const TruthSample& sample) {
+  return sample.nearest_robot_part == robot.base();
+}
+
 bool IsToldToMove(const ControlSample& tick) { return IsMoving(tick.v_command); }
 
 double FastestSphere_m_s(const robot::RobotModel& robot, const ControlSample& tick) {

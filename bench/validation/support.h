@@ -37,6 +37,9 @@ std::vector<NamedCase> WorstOf(const std::vector<Told>& told, double limit, cons
 /// What an item says where no row tells anything.
 ItemFinding NothingRun(const std::string& why);
 
+/// Whether what touches something, or is nearest to it, is the robot's base: that never moves, and
+/// no motion of the arm brings it out of the way.
+bool IsBase(const robot::RobotModel& robot, const TruthSample& sample);
 /// Whether joints of these velocities move: those of an arm at rest are noise.
 bool IsMoving(const Eigen::VectorXd& v);
 /// Whether the arm is told to move at a tick.

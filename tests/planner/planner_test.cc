@@ -111,6 +111,17 @@ TEST(Planner, KnowsHowLongTheDirectMotionTakesWithinItsLimits) {
   }
 }
 
+TEST(Planner, KnowsHowLongTheDirectMotionTakesForItsTool) {
+  PlannerSettings settings;
+  settings.velocity_limits = settings.acceleration_limits = false;
+  settings.tool_speed_m_s = 0.25;
+  const Puppet puppet(Direct, settings);
+  // Stretched out, the tool goes round a circle of 1 m; of the cubic the greatest speed is 3/2 of
+  // the way over the time.
+  const Eigen::Vector2d from(0, 0), to(0.8, 0);
+  EXPECT_NEAR(puppet.DirectTime_s(from, to), 1.5 * 0.8 / 0.25, 1e-3 * 4.8);
+}
+
 // A trajectory that does not answer the request, and what is said of it.
 struct Broken {
   std::string name;

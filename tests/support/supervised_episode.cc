@@ -98,14 +98,17 @@ SupervisedEpisode SupervisedEpisodes::Run(std::uint64_t seed) const {
     if (event.check == "obstacle_too_fast" && !episode.too_fast_m_s)
       episode.too_fast_m_s = event.value;
   }
-  const auto touch = record::FirstTouch(result.recording);
-  if (touch) {
-    episode.touch_s = touch->t.seconds();
-    for (const ControlSample& tick : result.recording.control) {
-      if (std::abs((tick.t - touch->t).seconds()) >= 2e-3) continue;
-      if (bench::IsToldToMove(tick)) episode.touched_in_motion = true;
-      episode.touch_m_s = std::max(episode.touch_m_s, bench::FastestSphere_m_s(robot_, tick));
-    }
+  const auto& truth = result.recording.truth;
+  const auto touched = std::find_if(truth.begin(), truth.end(),
+                                    [](const TruthSample& sample) { return sample.in_contact; });
+  if (touched == truth.end()) return episode;
+  const EpisodeTime t = record::FirstTouch(result.recording)->t;
+  episode.touch_s = t.seconds();
+  if (bench::IsBase(robot_, *touched)) return episode;
+  for (const ControlSample& tick : result.recording.control) {
+    if (std::abs((tick.t - t).seconds()) >= 2e-3) continue;
+    if (bench::IsToldToMove(tick)) episode.touched_in_motion = true;
+    episode.touch_m_s = std::max(episode.touch_m_s, bench::FastestSphere_m_s(robot_, tick));
   }
   return episode;
 }

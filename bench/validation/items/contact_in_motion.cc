@@ -1,4 +1,5 @@
-// A moving arm touches nothing. An arm at rest may be run into: that is no motion of ours.
+// A moving arm touches nothing. An arm at rest may be run into, and its base: that is no motion of
+// ours.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -20,6 +21,10 @@ Facts Measure(const ValidationRun& run) {
     if (!sample.in_contact) continue;
     const EpisodeTime t =
         std::isfinite(sample.contact_s) ? EpisodeTime(sample.contact_s) : sample.t;
+    if (IsBase(run.robot, sample)) {
+      at_rest = true;
+      continue;
+    }
     bool moves = false;
     for (const double aside_s : {-kSameMoment_s, 0.0, kSameMoment_s}) {
       const ControlSample* const tick = TickAt(recording, t + HorizonOffset(aside_s));
