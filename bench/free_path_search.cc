@@ -1,8 +1,10 @@
 #include "sidestep/bench/free_path_search.h"
 
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "sidestep/bench/scenario_planner.h"
 #include "sidestep/bench/true_world.h"
@@ -17,6 +19,15 @@ namespace {
 
 constexpr double kJudgeStep_s = 0.005, kAfterGoal_s = 0.5;
 
+// Planners do not know how fast the tool may be: with more time they find slower motions.
+std::vector<double> HorizonsToTry(const scenarios::Scenario& scenario,
+                                  const planner::Planner& planner) {
+  constexpr double kMore = 1.5;
+  const double horizon_s = HorizonOf(scenario, planner);
+  if (std::isinf(scenario.safety.tool_speed_m_s)) return {horizon_s};
+  return {horizon_s, kMore * horizon_s};
+}
+
 }  // namespace
 
 FreePath SearchFreePath(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
@@ -24,17 +35,22 @@ FreePath SearchFreePath(const scenarios::Scenario& scenario, const robot::RobotM
   const sdf::ShapeField field =
       TrueWorld(scenario, scenario.epsilon_m + robot.largest_sphere_radius_m());
   const auto planner = MakePlanner(scenario, robot);
-  planner::PlanRequest request = RequestOf(scenario, HorizonOf(scenario, *planner));
-  request.field = &field;
-  request.num_fixed =
-      1 + static_cast<int>(std::ceil(scenario.longest_latency_s() / scenario.step_s - 1e-9));
+  std::vector<planner::PlanRequest> requests;
+  for (const double horizon_s : HorizonsToTry(scenario, *planner)) {
+    requests.push_back(RequestOf(scenario, horizon_s));
+    requests.back().field = &field;
+    requests.back().num_fixed =
+        1 + static_cast<int>(std::ceil(scenario.longest_latency_s() / scenario.step_s - 1e-9));
+  }
 
   const Eigen::VectorXd scale = robot::ToleranceScale(robot);
   RandomStream random(seed, "free path search");
   FreePath best;
   best.clearance_m = -std::numeric_limits<double>::infinity();
   while (best.guesses < max_guesses && !best.found) {
-    if (best.guesses > 0) {
+    const auto guess = static_cast<std::size_t>(best.guesses);
+    planner::PlanRequest& request = requests[guess % requests.size()];
+    if (guess >= requests.size()) {
       request.initial.reset();
       request.initial = planner::MakeDetour(request, scale, random);
     }

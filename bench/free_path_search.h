@@ -20,8 +20,10 @@ struct FreePath {
 /// the direct motion and `max_guesses` - 1 random ones (a via configuration off the straight line,
 /// and the share of the time at which it is passed). What it finds is judged by the exact clearance
 /// of the collision spheres, to each other too, each 5 ms, until half a second after the goal; the
-/// robot rests for the scenario's latency first, as it does in an episode. It proves that a free
-/// motion exists; not finding one proves nothing.
+/// robot rests for the scenario's latency first, as it does in an episode. A motion whose tool is
+/// faster than `safety.tool_speed_m_s` does not count; where there is such a limit, every other
+/// guess is tried with half as much time again. It proves that a free motion exists; not finding
+/// one proves nothing.
 /// @param scenario with its task resolved (bench/resolve.h).
 FreePath SearchFreePath(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
                         int max_guesses, std::uint64_t seed);
