@@ -107,6 +107,7 @@ StaticGeoms ReadStaticGeoms(const std::string& path) {
 }
 
 double FootHeight(const World& world) {
+  constexpr double kRoom_m = 0.02;
   const WorldGeoms geoms = FindWorldGeoms(world.model());
   const int floor = geoms.floor.at(0);
   const GeomDistance distance(world.model());
@@ -118,7 +119,8 @@ double FootHeight(const World& world) {
     const bool is_fixed = IsFixed(world.model(), world.model().geom_bodyid[geom]);
     if (is_fixed) fixed_m = std::min(fixed_m, above_m);
   }
-  return GeomPosition(world.data(), floor).z() + (std::isfinite(fixed_m) ? fixed_m : any_m);
+  return GeomPosition(world.data(), floor).z() +
+         (std::isfinite(fixed_m) ? fixed_m : any_m - kRoom_m);
 }
 
 }  // namespace sidestep::sim

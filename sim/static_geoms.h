@@ -28,9 +28,9 @@ struct StaticGeoms {
 /// @throws InputError, at the line that MuJoCo tells, for a file that it does not take.
 StaticGeoms ReadStaticGeoms(const std::string& path);
 
-/// The height of the lowest point of those solids of the robot that never move; of all of them
-/// where it has none. Infinite for a robot without a solid. The world must have a floor, which is
-/// level.
+/// The height of the lowest point of those solids of the robot that never move; where it has none,
+/// 20 mm below the lowest point of all of them, for these are not to touch what it stands on.
+/// Infinite for a robot without a solid. The world must have a floor, which is level.
 double FootHeight(const World& world);
 
 }  // namespace sidestep::sim

@@ -122,6 +122,12 @@ class Reader {
     }
     ReadTies();
     ReadExcludes();
+    if (!damped_by_servo_.empty()) {
+      tree_.notes.push_back(
+          "left out, for the world's own controller damps: the damping of joints with <position> "
+          "actuators, " +
+          Joined(damped_by_servo_));
+    }
     return std::move(tree_);
   }
 
@@ -228,7 +234,7 @@ class Reader {
   }
 
   // How hard it is driven, if that is limited.
-  void ReadActuators(int id, robot::TreeJoint* joint) const {
+  void ReadActuators(int id, robot::TreeJoint* joint) {
     for (int motor = 0; motor < model_.nu; ++motor) {
       if (model_.actuator_trntype[motor] != mjTRN_JOINT) continue;
       if (model_.actuator_trnid[2 * motor] != id) continue;
@@ -246,7 +252,16 @@ class Reader {
                 std::abs(model_.actuator_gainprm[mjNGAIN * motor]);
       }
       if (force > 0) joint->torque_max = std::min(joint->torque_max, force);
+      if (!HasServoWithoutDamping(motor) || joint->dynamics.damping == 0) continue;
+      joint->dynamics.damping = 0;
+      damped_by_servo_.push_back(joint->name);
     }
+  }
+
+  // A servo that turns towards a position and has no damping of its own is given it as the joint's.
+  bool HasServoWithoutDamping(int motor) const {
+    const mjtNum* const bias = model_.actuator_biasprm + mjNBIAS * motor;
+    return model_.actuator_biastype[motor] == mjBIAS_AFFINE && bias[1] < 0 && bias[2] == 0;
   }
 
   void AddLink(int body) {
@@ -348,6 +363,7 @@ class Reader {
   const MjcfLines lines_;
   const bool visuals_;
   robot::RobotTree tree_;
+  std::vector<std::string> damped_by_servo_;  // joints
 };
 
 }  // namespace

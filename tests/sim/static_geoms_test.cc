@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <string>
@@ -12,6 +13,7 @@
 #include "sidestep/sim/simulation.h"
 #include "tests/sim/small_model.h"
 #include "tests/sim/two_link.h"
+#include "tests/support/bytes_of.h"
 #include "tests/support/random_points.h"
 #include "tests/support/temporary_folder.h"
 
@@ -165,6 +167,26 @@ TEST(FootHeight, IsThatOfTheLowestFixedSolid) {
   scenario.X_WB = Pose::Translation({0.3, 0.2, 0.7});
   const Simulation simulation(scenario, TwoLink(scenario), kTestModels);
   EXPECT_NEAR(FootHeight(simulation.world()), 0.7, 1e-6);
+}
+
+TEST(FootHeight, LeavesRoomBelowARobotOfWhichAllMoves) {
+  const TemporaryFolder folder;
+  const std::filesystem::path copy = folder.path();
+  std::filesystem::copy(kTestModels, copy, std::filesystem::copy_options::recursive);
+  const std::string file = copy / "two_link/two_link.xml";
+  std::string xml = BytesOf(file);
+  const std::size_t foot = xml.find("<geom name=\"foot\"");
+  xml.erase(foot, xml.find("/>", foot) + 2 - foot);
+  std::ofstream(file) << xml;
+  scenarios::Scenario scenario = TwoLinkScenario();
+  scenario.floor_m = -5;
+  scenario.static_obstacles.clear();
+  scenario.moving_obstacles.clear();
+  scenario.q_start.setZero();
+  const Simulation simulation(scenario, robot::RobotModel::Load(copy.string(), "two_link", Pose()),
+                              copy.string());
+  // Stretched out, the ball of 50 mm at its end is 300 mm above the base.
+  EXPECT_NEAR(FootHeight(simulation.world()), 0.25 - 0.02, 1e-6);
 }
 
 }  // namespace
