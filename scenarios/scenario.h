@@ -208,6 +208,8 @@ struct Scenario {
 
   Safety safety;
   SensorSettings sensor;
+  std::vector<SensorSettings> more_sensors;  ///< beside it
+  EvidenceSettings evidence;                 ///< of what depth cameras see
   std::uint64_t seed = 1;
 
   std::map<std::string, std::string> choices;  ///< what was chosen, by the choice's name
@@ -247,6 +249,12 @@ void ScaleSpeeds(Scenario& scenario, double factor);
 /// coordinate.
 /// @throws std::invalid_argument with what is wrong, as of ConvexPolytope.
 ConvexMesh MakeConvexMesh(const std::vector<Eigen::Vector3d>& vertices_m);
+
+/// All sensors of a scenario, in the file's order.
+std::vector<SensorSettings> SensorsOf(const Scenario& scenario);
+/// The scenario with this sensor and no other. One that has a name of its own has a seed of its
+/// own: two cameras do not err alike.
+Scenario WithSensor(Scenario scenario, const SensorSettings& sensor);
 
 /// The folder of the scenario's robot. @throws InputError at `robot.model` if there is none.
 std::string RobotFolder(const Scenario& scenario, const ModelFolders& models);

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,8 +37,9 @@ inline constexpr Knowledge kAllKnowledge[] = {Knowledge::kStatic, Knowledge::kEx
 
 struct WorldModelOptions {
   Knowledge knowledge = Knowledge::kPrediction;
-  std::string predictor = "kalman_cv";            ///< a name of sdf/prediction/registry.h
-  UnseenSpace unseen = UnseenSpace::kRemembered;  ///< of scans of surfaces
+  std::string predictor = "kalman_cv";      ///< a name of sdf/prediction/registry.h
+  std::map<std::string, CameraView> views;  ///< of sensors that see surfaces, by name
+  EvidenceOptions evidence;                 ///< of their scans
   /// Under prediction, moving things are taken to be thicker by so many standard deviations of
   /// where they are predicted to be, in the worst direction, but by no more than the limit [m].
   double growth_sigmas = 0, growth_limit_m = 0.1;
@@ -74,10 +77,13 @@ class WorldModel {
  public:
   virtual ~WorldModel() = default;
 
-  /// Takes in a scan, in the order of capture.
-  virtual void Observe(const Scan& scan) = 0;
+  /// Takes in the scans, of one sensor or several, that were captured at one moment; moments come
+  /// in their order.
+  /// @throws std::invalid_argument for none, or of a moment that is not after the last.
+  virtual void Observe(std::span<const Scan> scans) = 0;
+  void Observe(const Scan& scan) { Observe({&scan, 1}); }
 
-  /// What the latest scan said is filled, in the grid of the options.
+  /// What is filled after the latest scans, in the grid of the options.
   virtual const OccupancyGrid& Occupancy() const = 0;
 
   /// The belief after the latest scan, as an immutable snapshot. Needs at least one scan.

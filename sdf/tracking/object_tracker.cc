@@ -52,10 +52,12 @@ ObjectTracker::ObjectTracker(const GridSpec& grid, const ObjectTrackerOptions& o
   }
 }
 
-TrackerTimes ObjectTracker::Update(const OccupancyGrid& occupancy, EpisodeTime t) {
+TrackerTimes ObjectTracker::Update(const OccupancyGrid& occupancy, EpisodeTime t,
+                                   std::span<const std::uint8_t> once_free) {
   if (occupancy.spec != grid_) throw std::invalid_argument("ObjectTracker: another grid");
   if (t_last_ && t <= *t_last_) throw std::invalid_argument("ObjectTracker: time must go on");
   t_last_ = t;
+  once_free_ = once_free;
   TrackerTimes times;
   Stopwatch stopwatch;
 
@@ -205,7 +207,8 @@ ObjectTracker::Track* ObjectTracker::Begin(const Component& component, EpisodeTi
   track.object.history = {See(t, component.centroid_m)};
   track.p_WStart = component.centroid_m;
   track.t_start = t;
-  track.settle = options_.settle;
+  // What has come is not at rest because it was just seen.
+  track.settle = !once_free_.empty() && MayHaveCome(component) ? options_.rest : options_.settle;
   TakeShape(track, component);
   return &track;
 }
@@ -240,7 +243,7 @@ void ObjectTracker::Classify(Track& track, const Component& component, EpisodeTi
   const Eigen::Vector3d& p_WO = track.object.latest().p_WO;
   bool rests = false;
   if (track.state == State::kNew) {
-    if ((p_WO - track.p_WStart).norm() >= moved_m) {
+    if ((p_WO - track.p_WStart).norm() >= moved_m && MayHaveCome(component)) {
       track.state = State::kMoving;
       TakeShape(track, component);  // now with its field
       Note(track_event::kMoved, track, t);
@@ -261,6 +264,13 @@ void ObjectTracker::Classify(Track& track, const Component& component, EpisodeTi
     track.object.field_O.reset();
     background_.Absorb(track.object.id, component);
   }
+}
+
+bool ObjectTracker::MayHaveCome(const Component& component) const {
+  if (once_free_.empty()) return true;
+  const auto count = std::count_if(component.cells.begin(), component.cells.end(),
+                                   [&](std::size_t cell) { return once_free_[cell] != 0; });
+  return count >= options_.least_cells;
 }
 
 Sighting ObjectTracker::See(EpisodeTime t, const Eigen::Vector3d& p_WO) const {

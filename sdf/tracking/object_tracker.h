@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -23,9 +25,11 @@ struct ObjectTrackerOptions {
   /// speed of 0 up to max_speed_m_s + 2 cells * the rate of scans (6.4 m/s with 4 cm and 30 Hz); a
   /// faster one is new in each scan and believed to rest. Docs: docs/prediction.md.
   double max_speed_m_s = 4;
-  double moved_cells = 0.75;   ///< a thing that is this far from where it began is moving
+  double moved_cells = 0.75;  ///< a thing that is this far from where it began is moving
+  /// If it has so many cells that were once known to be free; what else grows is only seen better.
+  int least_cells = 1;
   HorizonOffset settle{0.06};  ///< a thing seen for this long that has not moved is static
-  HorizonOffset rest{0.4};     ///< the same for a thing that is known to have moved before
+  HorizonOffset rest{0.4};     ///< the same for a thing that is known to have moved or come
   HorizonOffset memory{2};     ///< how far back a history reaches
   DistanceConvention convention = DistanceConvention::kSurface;  ///< of objects' fields
   int max_missed_scans = 3;  ///< a moving thing unseen for more scans in a row is given up
@@ -73,8 +77,10 @@ class ObjectTracker {
   ObjectTracker(const GridSpec& grid, const ObjectTrackerOptions& options);
 
   /// Takes in what is filled at time t.
+  /// @param once_free 1 for each cell that was ever known to be free; empty: all were.
   /// @throws std::invalid_argument for another grid, or unless t is later than the last.
-  TrackerTimes Update(const OccupancyGrid& occupancy, EpisodeTime t);
+  TrackerTimes Update(const OccupancyGrid& occupancy, EpisodeTime t,
+                      std::span<const std::uint8_t> once_free = {});
 
   /// The things that move, by id, also those that the latest scan did not show.
   std::vector<std::shared_ptr<const TrackedObject>> MovingObjects() const;
@@ -123,6 +129,8 @@ class ObjectTracker {
   Track* Begin(const Component& component, EpisodeTime t);
   void Follow(Track& track, const Component& component, EpisodeTime t) const;
   void Classify(Track& track, const Component& component, EpisodeTime t);
+  // Whether what is filled there can have come from elsewhere.
+  bool MayHaveCome(const Component& component) const;
 
   Sighting See(EpisodeTime t, const Eigen::Vector3d& p_WO) const;
   // Where O is, if `component` is a view of the track's shape.
@@ -140,6 +148,7 @@ class ObjectTracker {
   std::map<int, Track> tracks_;  // by id, hence from the oldest to the newest
   int next_id_ = 1;
   std::optional<EpisodeTime> t_last_;
+  std::span<const std::uint8_t> once_free_;  // while a scan is taken in
 };
 
 }  // namespace sidestep::sdf

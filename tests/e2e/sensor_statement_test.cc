@@ -198,6 +198,7 @@ TEST(DepthCamera, HasTheNoiseThatItSaysAtItsDepth) {
   camera.pixel_dropout = 0.25;
   camera.unseen = "free";
   scenario.sensor.camera = camera;
+  scenario.evidence.single_frames = true;
   const record::Recording recording = Record(scenario);
   std::map<int, int> counts;
   int measured = 0;
