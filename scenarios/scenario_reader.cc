@@ -540,9 +540,28 @@ void ReadSafety(const YamlReader& top, Scenario& scenario) {
   map.CheckNoUnknownKeys();
 }
 
+void ReadTracking(const YamlReader& top, Tracking& tracking) {
+  if (!top.Has("tracking")) return;
+  const YamlReader map = top.GetMap("tracking");
+  const auto at_most = [&](const char* key, double value, double most) {
+    if (value > most) {
+      map.Fail(key, "must be at most " + ShortestText(most) + ", is " + ShortestText(value));
+    }
+    return value;
+  };
+  if (map.Has("coast_s")) {
+    tracking.coast_s = at_most("coast_s", map.GetNonNegative("coast_s"), 10);
+  }
+  if (map.Has("max_speed_m_s")) {
+    tracking.max_speed_m_s = at_most("max_speed_m_s", map.GetPositive("max_speed_m_s"), 100);
+  }
+  map.CheckNoUnknownKeys();
+}
+
 void ReadPerception(const YamlReader& top, Scenario& scenario) {
   scenario.knowledge = top.GetString("knowledge");
   scenario.predictor = top.Has("predictor") ? top.GetString("predictor") : "kalman_cv";
+  ReadTracking(top, scenario.tracking);
   scenario.sensor = ReadSensorSettings(top.GetMap("sensor"));
   const int seed = top.GetInt("seed");
   if (seed < 0) top.Fail("seed", "must be >= 0, is " + std::to_string(seed));

@@ -96,7 +96,9 @@ void ScanMap::FillUnseen() {
 
 const OccupancyGrid& ScanMap::Update(const Scan& scan) {
   const OccupancyGrid& hits = rasteriser_.Fill(scan);
+  seen_.clear();
   if (scan.kind == ScanKind::kSolid) return hits;
+  seen_.assign(map_.cells.size(), 0);
   if (unseen_ != UnseenSpace::kRemembered) FillUnseen();
   std::vector<std::size_t> seen_free;
   for (const Eigen::Matrix3Xd* const ends : {&scan.p_CP, &scan.p_CFree}) {
@@ -105,11 +107,14 @@ const OccupancyGrid& ScanMap::Update(const Scan& scan) {
       if (!p_WEnd.allFinite()) continue;
       seen_free.clear();
       VisitCellsOnTheWay(map_.spec, scan.X_WC.translation(), p_WEnd, &seen_free);
-      for (const std::size_t cell : seen_free) map_.cells[cell] = 0;
+      for (const std::size_t cell : seen_free) {
+        map_.cells[cell] = 0;
+        seen_[cell] = 1;
+      }
     }
   }
   for (std::size_t cell = 0; cell < hits.cells.size(); ++cell) {
-    if (hits.cells[cell] != 0) map_.cells[cell] = 1;
+    if (hits.cells[cell] != 0) map_.cells[cell] = seen_[cell] = 1;
   }
   return map_;
 }

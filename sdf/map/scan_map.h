@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,12 +36,16 @@ class ScanMap {
   /// call.
   const OccupancyGrid& Update(const Scan& scan);
 
+  /// One byte a cell: 0 where the latest scan did not look. Empty: it looked everywhere.
+  std::span<const std::uint8_t> seen() const { return seen_; }
+
  private:
   void FillUnseen();  // the map as it is where nobody looked
 
   UnseenSpace unseen_;
   ScanRasteriser rasteriser_;
   OccupancyGrid map_;  // after the last scan of surfaces
+  std::vector<std::uint8_t> seen_;
 };
 
 /// The cells that a straight line passes through on its way from `start` to `end`, the end's own
