@@ -519,6 +519,9 @@ sdf::WorldModelOptions MakeWorldModelOptions(const scenarios::Scenario& scenario
   sdf::WorldModelOptions options;
   options.knowledge = sdf::KnowledgeFromString(scenario.knowledge);
   options.predictor = scenario.predictor;
+  options.coast = HorizonOffset(scenario.tracking.coast_s);
+  options.max_speed_m_s = scenario.tracking.max_speed_m_s;
+  options.gates_named_objects = scenario.sensor.tags.has_value();
   options.growth_sigmas = scenario.growth_sigmas;
   options.growth_limit_m = scenario.growth_limit_m;
   if (scenario.safety.profile == scenarios::SafetyProfile::kLab) {

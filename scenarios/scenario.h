@@ -152,6 +152,12 @@ struct Safety {
   double tool_speed_m_s = std::numeric_limits<double>::infinity();
 };
 
+/// How what moves is followed.
+struct Tracking {
+  double coast_s = 1;        ///< how long what is not seen goes on as predicted
+  double max_speed_m_s = 4;  ///< what is faster, from one scan to the next, is another thing
+};
+
 /// How the planner knows what never moves.
 enum class StaticWorld {
   kOccupancy,  ///< as the sensor sees it: by cells
@@ -207,6 +213,7 @@ struct Scenario {
   double longest_latency_s() const { return latency == Latency::kNone ? 0 : latency_s; }
 
   Safety safety;
+  Tracking tracking;
   SensorSettings sensor;
   std::vector<SensorSettings> more_sensors;  ///< beside it
   EvidenceSettings evidence;                 ///< of what depth cameras see

@@ -251,6 +251,8 @@ std::string ToYaml(const Scenario& scenario) {
   if (has_robot) text += PlannerText(scenario);
   line("knowledge: " + Quoted(scenario.knowledge));
   line("predictor: " + Quoted(scenario.predictor));
+  line("tracking: {coast_s: " + Number(scenario.tracking.coast_s) +
+       ", max_speed_m_s: " + Number(scenario.tracking.max_speed_m_s) + "}");
   const std::vector<SensorSettings> sensors = SensorsOf(scenario);
   text += ToYaml(sensors);
   const auto has_camera = [](const SensorSettings& sensor) { return sensor.camera.has_value(); };

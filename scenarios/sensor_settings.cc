@@ -14,6 +14,7 @@ namespace {
 constexpr double kMaxRateHz = 1000, kMaxDelay = 10, kMaxNoise = 1;
 constexpr int kMaxPixels = 2048;
 constexpr double kMaxLogOdds = 100, kMaxDecay = 1e4, kMaxSigmas = 20;
+constexpr double kMaxTag_m = 2, kMaxOutlier_m = 10;
 constexpr double kMaxDistortion = 1, kMaxExposure = 0.1, kMaxBlur = 10, kMaxGreyNoise = 100;
 
 double AtMost(const YamlReader& map, const char* key, double otherwise, double most) {
@@ -89,6 +90,13 @@ TagSettings ReadTags(const YamlReader& map) {
   tags.along_noise_per_m = AtMost(map, "along_noise_per_m", tags.along_noise_per_m, kMaxNoise);
   tags.rotation_noise_rad = AtMost(map, "rotation_noise_rad", tags.rotation_noise_rad, kMaxNoise);
   tags.range_m = PositiveAtMost(map, "range_m", tags.range_m, 100);
+  tags.size_m = AtMost(map, "size_m", tags.size_m, kMaxTag_m);
+  tags.partly_hidden = AtMost(map, "partly_hidden", tags.partly_hidden, 1);
+  tags.flips = AtMost(map, "flips", tags.flips, 1);
+  tags.outliers = AtMost(map, "outliers", tags.outliers, 1);
+  tags.outlier_m = PositiveAtMost(map, "outlier_m", tags.outlier_m, kMaxOutlier_m);
+  tags.swaps = AtMost(map, "swaps", tags.swaps, 1);
+  tags.phantoms = AtMost(map, "phantoms", tags.phantoms, 1);
   map.CheckNoUnknownKeys();
   return tags;
 }
@@ -186,7 +194,11 @@ std::vector<std::string> LinesOf(const SensorSettings& settings) {
                     ", across_noise: " + Number(tags.across_noise) +
                     ", along_noise_per_m: " + Number(tags.along_noise_per_m) +
                     ", rotation_noise_rad: " + Number(tags.rotation_noise_rad) +
-                    ", range_m: " + Number(tags.range_m) + "}");
+                    ", range_m: " + Number(tags.range_m) + ", size_m: " + Number(tags.size_m) +
+                    ", partly_hidden: " + Number(tags.partly_hidden) +
+                    ", flips: " + Number(tags.flips) + ", outliers: " + Number(tags.outliers) +
+                    ", outlier_m: " + Number(tags.outlier_m) + ", swaps: " + Number(tags.swaps) +
+                    ", phantoms: " + Number(tags.phantoms) + "}");
   }
   if (settings.tag_images) {
     const TagImageSettings& images = *settings.tag_images;

@@ -49,7 +49,7 @@ struct EvidenceSettings {
   bool single_frames = false;  ///< each image is taken at its word, and the rest does not count
   double hit = 0.7, miss = 1.4, least = -2.8, most = 2.8;  ///< log-odds
   int settle_scans = 10;
-  double decay_per_s = 7;
+  double decay_per_s = 30;
   double noise_sigmas = 4;
   int least_cells = 6;
 };
@@ -63,6 +63,15 @@ struct TagSettings {
   double along_noise_per_m = 0.002;                      ///< times d^2
   double rotation_noise_rad = 0;                         ///< about each axis
   double range_m = 5;                                    ///< farther things are not found
+  double size_m = 0;         ///< the edge of a tag, all of which must be in sight; 0: its middle
+  double partly_hidden = 0;  ///< probability that it is found, badly, if only a part of it is
+  // What goes wrong at times. Probabilities: for each tag in each scan, of swaps and phantoms for
+  // each scan.
+  double flips = 0;        ///< it is turned by the other pose that explains what is seen
+  double outliers = 0;     ///< it is anywhere within outlier_m of where it is
+  double outlier_m = 0.5;  ///< > 0
+  double swaps = 0;        ///< two tags are taken for each other
+  double phantoms = 0;     ///< one is found where there is none
 };
 
 /// A colour or infrared camera whose pictures are searched for the tags that are printed on boxes,

@@ -148,6 +148,16 @@ class FrozenWorld final : public MappedWorld {
   void Learn(const OccupancyGrid& occupancy, EpisodeTime) override { static_map_.Set(occupancy); }
 };
 
+NamedObjectsOptions OptionsOfNamed(const WorldModelOptions& options) {
+  NamedObjectsOptions named;
+  named.cell_m = options.grid.cell_m;
+  named.max_distance_m = options.max_distance_m + LargestGrowth(options);
+  named.coast = options.coast;
+  if (options.remembers_lost) named.keep_within = options.grid;
+  if (options.gates_named_objects) named.gates = GatesOfTags(options.max_speed_m_s, options.coast);
+  return named;
+}
+
 // Knowledge::kPrediction
 class PredictedWorld final : public MappedWorld {
  public:
@@ -155,10 +165,11 @@ class PredictedWorld final : public MappedWorld {
       : MappedWorld(options),
         predictor_(MakePredictor(options.predictor)),
         tracker_(options.grid, {.max_distance_m = options.max_distance_m + LargestGrowth(options),
+                                .max_speed_m_s = options.max_speed_m_s,
                                 .least_cells = options.evidence.least_cells,
-                                .convention = options.convention}),
-        named_objects_(options.grid.cell_m, options.max_distance_m + LargestGrowth(options),
-                       options.remembers_lost ? std::optional(options.grid) : std::nullopt) {}
+                                .convention = options.convention,
+                                .coast = options.coast}),
+        named_objects_(OptionsOfNamed(options)) {}
 
   std::vector<PredictedObject> DescribeObjects(
       const std::vector<EpisodeTime>& times) const override {
@@ -174,7 +185,11 @@ class PredictedWorld final : public MappedWorld {
     return described;
   }
 
-  std::vector<TrackEvent> TakeEvents() override { return tracker_.TakeEvents(); }
+  std::vector<TrackEvent> TakeEvents() override {
+    std::vector<TrackEvent> events = named_objects_.TakeEvents();
+    for (TrackEvent& event : tracker_.TakeEvents()) events.push_back(std::move(event));
+    return events;
+  }
 
   std::vector<ObstacleState> MovingNow() const override {
     std::vector<ObstacleState> moving;
@@ -224,7 +239,8 @@ class PredictedWorld final : public MappedWorld {
   }
 
   void Learn(const OccupancyGrid& occupancy, EpisodeTime t) override {
-    const TrackerTimes times = tracker_.Update(occupancy, t, scan_map_.once_free());
+    const TrackerTimes times =
+        tracker_.Update(occupancy, t, {scan_map_.seen(), scan_map_.once_free()});
     times_.segment_s += times.segment_s;
     times_.track_s += times.track_s;
     Stopwatch stopwatch;
@@ -343,6 +359,9 @@ std::unique_ptr<WorldModel> MakeWorldModel(const WorldModelOptions& options) {
   CheckGridSpec(options.grid);
   if (!(options.max_distance_m > 0)) {
     throw std::invalid_argument("WorldModel: max_distance_m must be > 0");
+  }
+  if (!(options.coast.seconds() >= 0) || !(options.max_speed_m_s > 0)) {
+    throw std::invalid_argument("WorldModel: coast must be >= 0 and max_speed_m_s > 0");
   }
   if (!(options.growth_sigmas >= 0) || !(options.growth_limit_m >= 0) ||
       !(options.stray_m_s2 >= 0) || !(options.stray_s >= 0)) {

@@ -47,6 +47,13 @@ struct WorldModelOptions {
   /// [m/s^2], reckoned for at most so long [s]: by then one has looked again, or has stopped. What
   /// is near already is not thought to be touched, but to be left.
   double stray_m_s2 = 0, stray_s = 0;
+  /// How long what is not seen goes on as predicted, and what is faster from one scan to the next
+  /// than anything that is followed (sdf/tracking/).
+  HorizonOffset coast{1};
+  double max_speed_m_s = 4;
+  /// Named objects may be wrong, and pass gates (sdf/tracking/named_objects.h); else whoever names
+  /// them has judged them. Only what predicts follows them.
+  bool gates_named_objects = false;
   /// A named object that was seen last inside the grid is not forgotten: it is somewhere near.
   bool remembers_lost = false;
   GridSpec grid;              ///< in W

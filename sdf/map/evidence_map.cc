@@ -64,6 +64,7 @@ EvidenceMap::EvidenceMap(const GridSpec& grid_W, const EvidenceOptions& options,
   filled_ = new_hits_ = OccupancyGrid(grid_W);
   cells_.resize(grid_W.num_cells());
   once_free_.assign(grid_W.num_cells(), 0);
+  in_view_.assign(grid_W.num_cells(), 0);
   marks_.assign(grid_W.num_cells(), 0);
   for (const auto& [name, view] : views) {
     Find(name).view = view;
@@ -89,14 +90,17 @@ void EvidenceMap::Update(const Scan& scan) {
   const double dt_s = camera.t_scan ? std::max(0.0, (scan.t - *camera.t_scan).seconds()) : 0;
   camera.t_scan = scan.t;
   const double decay = options_.decay_per_s * dt_s;
+  const std::uint8_t bit = camera.bit();
   for (std::size_t index = 0; index < cells_.size(); ++index) {
     const std::uint8_t mark = marks_[index];
+    std::uint8_t& in_view = in_view_[index];
+    in_view = static_cast<std::uint8_t>(mark != 0 ? in_view | bit : in_view & ~bit);
     if ((mark & kHit) != 0) {
       Hit(cells_[index], index, camera);
     } else if (mark != 0) {
       Pass(cells_[index], index, camera);
     } else if (cells_[index].seen_by != 0) {
-      Miss(cells_[index], index, camera, decay);
+      Overlook(cells_[index], index, camera, decay);
     }
   }
   std::fill(marks_.begin(), marks_.end(), std::uint8_t{0});
@@ -196,14 +200,14 @@ void EvidenceMap::Hit(Cell& cell, std::size_t index, const Camera& camera) {
   const float sum = cell.log_odds + static_cast<float>(options_.hit);
   cell.log_odds = std::min(sum, static_cast<float>(options_.most));
   cell.seen_by = camera.number;
-  cell.hit_by |= static_cast<std::uint8_t>(1U << (camera.number - 1U));
+  cell.hit_by |= camera.bit();
   const bool is_filled = cell.log_odds > kRounding;
   filled_.cells[index] = is_filled ? 1 : 0;
   if (is_filled && !IsSettled(cell)) ++cell.hits;
 }
 
 void EvidenceMap::Pass(Cell& cell, std::size_t index, const Camera& camera) {
-  cell.hit_by &= static_cast<std::uint8_t>(~(1U << (camera.number - 1U)));
+  cell.hit_by &= static_cast<std::uint8_t>(~camera.bit());
   if (cell.hit_by != 0) return;
   const auto least = static_cast<float>(options_.least);
   cell.log_odds = std::max(cell.log_odds - static_cast<float>(options_.miss), least);
@@ -214,8 +218,8 @@ void EvidenceMap::Pass(Cell& cell, std::size_t index, const Camera& camera) {
   if (cell.log_odds <= least + kRounding) once_free_[index] = 1;
 }
 
-void EvidenceMap::Miss(Cell& cell, std::size_t index, const Camera& camera, double decay) {
-  cell.hit_by &= static_cast<std::uint8_t>(~(1U << (camera.number - 1U)));
+void EvidenceMap::Overlook(Cell& cell, std::size_t index, const Camera& camera, double decay) {
+  cell.hit_by &= static_cast<std::uint8_t>(~camera.bit());
   if (cell.seen_by != camera.number) return;
   if (camera.view.unseen != UnseenSpace::kRemembered) {
     filled_.cells[index] = camera.view.unseen == UnseenSpace::kFilled ? 1 : 0;

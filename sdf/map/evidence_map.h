@@ -66,9 +66,13 @@ class EvidenceMap {
   /// Takes in a scan of surfaces. Of each sensor they come in the order of capture.
   void Update(const Scan& scan);
 
+  /// In the order of GridSpec::Index.
   const OccupancyGrid& filled() const { return filled_; }
 
-  /// 1 for each cell that has ever been known to be free, in the order of GridSpec::Index: what is
+  /// Not 0 for each cell that the latest scan of any camera has looked at, in the same order.
+  const std::vector<std::uint8_t>& seen() const { return in_view_; }
+
+  /// 1 for each cell that has ever been known to be free, in the same order: what is
   /// filled there has come, and what is filled elsewhere may have been there all the time.
   const std::vector<std::uint8_t>& once_free() const { return once_free_; }
 
@@ -83,6 +87,7 @@ class EvidenceMap {
     CameraView view;
     std::uint8_t number = 0;            // from 1
     std::optional<EpisodeTime> t_scan;  // of its latest scan
+    std::uint8_t bit() const { return static_cast<std::uint8_t>(1U << (number - 1U)); }
   };
 
   Camera& Find(const std::string& name);
@@ -95,13 +100,14 @@ class EvidenceMap {
   void BelieveAtOnce();
   void Hit(Cell& cell, std::size_t index, const Camera& camera);
   void Pass(Cell& cell, std::size_t index, const Camera& camera);
-  void Miss(Cell& cell, std::size_t index, const Camera& camera, double decay);
+  void Overlook(Cell& cell, std::size_t index, const Camera& camera, double decay);
 
   EvidenceOptions options_;
   std::map<std::string, Camera> cameras_;
   std::vector<Cell> cells_;
   OccupancyGrid filled_;
   std::vector<std::uint8_t> once_free_;
+  std::vector<std::uint8_t> in_view_;  // a bit for each camera whose latest scan looked there
   // Of the scan that is being taken in:
   std::vector<std::uint8_t> marks_;  // by cell
   OccupancyGrid new_hits_;           // where points end that nothing explains

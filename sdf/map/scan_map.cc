@@ -39,8 +39,14 @@ void ScanMap::Fuse() {
   }
 }
 
-const std::vector<std::uint8_t>& ScanMap::once_free() const {
-  return surfaces_ && solids_.empty() ? surfaces_->once_free() : fused_once_free_;
+std::span<const std::uint8_t> ScanMap::seen() const {
+  if (!surfaces_) return {};
+  return surfaces_->seen();
+}
+
+std::span<const std::uint8_t> ScanMap::once_free() const {
+  if (!surfaces_) return {};
+  return solids_.empty() ? surfaces_->once_free() : fused_once_free_;
 }
 
 void FillObjects(const std::vector<ObjectObservation>& objects, CellRule rule,

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,9 +30,13 @@ class ScanMap {
   /// call.
   const OccupancyGrid& Update(const Scan& scan);
 
+  /// Not 0 for each cell that a camera's latest scan looked at; empty: sensors of solids look
+  /// everywhere.
+  std::span<const std::uint8_t> seen() const;
+
   /// 1 for each cell where what is filled may have come, as EvidenceMap::once_free has it; empty:
   /// anywhere, for what sensors of solids tell.
-  const std::vector<std::uint8_t>& once_free() const;
+  std::span<const std::uint8_t> once_free() const;
 
  private:
   void Fuse();
