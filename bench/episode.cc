@@ -16,6 +16,7 @@
 #include "sidestep/bench/latency.h"
 #include "sidestep/bench/metrics/registry.h"
 #include "sidestep/bench/planning_worker.h"
+#include "sidestep/bench/robot_filter.h"
 #include "sidestep/bench/safety_watch.h"
 #include "sidestep/bench/scan_order.h"
 #include "sidestep/bench/scenario_planner.h"
@@ -106,6 +107,7 @@ class Loop {
         worker_(is_real_time_ ? MakeThreadWorker() : MakeInlineWorker()),
         recorder_(scenario, robot, world),
         scans_(NamesOf(world.sensors)),
+        robot_filter_(scenario, planner_->robot()),
         end_s_(options.horizons * horizon_s_) {
     if (scenario.safety.profile != scenarios::SafetyProfile::kOff) {
       safety_.emplace(scenario, world);
@@ -285,9 +287,15 @@ class Loop {
   }
 
   void Sense() {
-    SensorWatch* const sensor = NextSensor();
-    if (sensor != nullptr && sensor->NextDue().seconds() <= now_s_) Read(*sensor);
-    while (const std::optional<Scan> scan = scans_.Take(EpisodeTime(now_s_))) Learn(*scan);
+    // First from all of them: what they saw at one moment belongs together.
+    for (SensorWatch* sensor = NextSensor();
+         sensor != nullptr && sensor->NextDue().seconds() <= now_s_; sensor = NextSensor()) {
+      Read(*sensor);
+    }
+    for (auto scans = scans_.Take(EpisodeTime(now_s_)); !scans.empty();
+         scans = scans_.Take(EpisodeTime(now_s_))) {
+      Learn(scans);
+    }
   }
 
   void Read(SensorWatch& sensor) {
@@ -299,15 +307,20 @@ class Loop {
       Note(control::SafetyCheck::kClockJump, control::Reaction::kNone, *jump_s,
            ClockWatch::kJump_s);
     }
-    if (scan && !scans_.Put(*std::move(scan), EpisodeTime(now_s_))) sensor.LeaveOut();
+    if (!scan) return;
+    if (robot_filter_.Sees(scan->sensor)) {
+      robot_filter_.Remove(MeasuredAt(scan->t, recorder_.recording().control, world_.robot->Read()),
+                           &*scan);
+    }
+    if (!scans_.Put(*std::move(scan), EpisodeTime(now_s_))) sensor.LeaveOut();
   }
 
-  void Learn(const Scan& scan) {
+  void Learn(const std::vector<Scan>& scans) {
     has_scan_ = true;
-    model_->Observe(scan);
+    model_->Observe(scans);
     for (TrackEvent& event : model_->TakeEvents()) recorder_.Keep(std::move(event));
-    recorder_.Keep(scan, EpisodeTime(now_s_), model_->Occupancy());
-    if (safety_) world_.robot->Watch(safety_->Observe(scan));
+    for (const Scan& scan : scans) recorder_.Keep(scan, EpisodeTime(now_s_), model_->Occupancy());
+    if (safety_) world_.robot->Watch(safety_->Observe(scans));
   }
 
   // The first multiple of the period that is past `t_s`, or as good as there, and not used yet.
@@ -437,6 +450,7 @@ class Loop {
   std::unique_ptr<PlanningWorker> worker_;
   EpisodeRecorder recorder_;
   ScanOrder scans_;
+  RobotFilter robot_filter_;
   std::optional<SafetyWatch> safety_;
 
   std::deque<Pending> pending_;
@@ -458,11 +472,30 @@ class Loop {
 
 namespace {
 
+bool SeesTags(const scenarios::Scenario& scenario) {
+  const std::vector<scenarios::SensorSettings> sensors = scenarios::SensorsOf(scenario);
+  return std::any_of(sensors.begin(), sensors.end(), [](const auto& sensor) {
+    return sensor.tags.has_value() || sensor.tag_images.has_value();
+  });
+}
+
+sdf::EvidenceOptions EvidenceOf(const scenarios::EvidenceSettings& settings) {
+  sdf::EvidenceOptions options;
+  options.hit = settings.hit;
+  options.miss = settings.miss;
+  options.least = settings.least;
+  options.most = settings.most;
+  options.settle_scans = settings.settle_scans;
+  options.decay_per_s = settings.decay_per_s;
+  options.noise_sigmas = settings.noise_sigmas;
+  options.least_cells = settings.least_cells;
+  return options;
+}
+
 // Of what is known by its shape, and not by cells that the workspace bounds.
 void CheckFieldSizes(const scenarios::Scenario& scenario, const sdf::WorldModelOptions& options) {
   const bool by_truth = options.knowledge == sdf::Knowledge::kFullKnowledge;
-  const bool by_tags = options.knowledge == sdf::Knowledge::kPrediction &&
-                       (scenario.sensor.tags.has_value() || scenario.sensor.tag_images.has_value());
+  const bool by_tags = options.knowledge == sdf::Knowledge::kPrediction && SeesTags(scenario);
   if (!by_truth && !by_tags) return;
   const double growth_m = by_tags ? sdf::LargestGrowth(options) : 0;
   for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
@@ -486,6 +519,9 @@ sdf::WorldModelOptions MakeWorldModelOptions(const scenarios::Scenario& scenario
   sdf::WorldModelOptions options;
   options.knowledge = sdf::KnowledgeFromString(scenario.knowledge);
   options.predictor = scenario.predictor;
+  options.coast = HorizonOffset(scenario.tracking.coast_s);
+  options.max_speed_m_s = scenario.tracking.max_speed_m_s;
+  options.gates_named_objects = scenario.sensor.tags.has_value();
   options.growth_sigmas = scenario.growth_sigmas;
   options.growth_limit_m = scenario.growth_limit_m;
   if (scenario.safety.profile == scenarios::SafetyProfile::kLab) {
@@ -494,9 +530,12 @@ sdf::WorldModelOptions MakeWorldModelOptions(const scenarios::Scenario& scenario
     options.stray_s = kUsualStop_s;
   }
   options.grid = scenario.grid;
-  if (scenario.sensor.camera) {
-    options.unseen = sdf::UnseenSpaceFromString(scenario.sensor.camera->unseen);
+  for (const scenarios::SensorSettings& sensor : scenarios::SensorsOf(scenario)) {
+    if (!sensor.camera) continue;
+    options.views[NameOf(sensor)] = {sdf::UnseenSpaceFromString(sensor.camera->unseen),
+                                     sensor.camera->noise_per_m};
   }
+  if (!scenario.evidence.single_frames) options.evidence = EvidenceOf(scenario.evidence);
   options.max_distance_m = max_distance_m;
   options.cells = scenario.sensor.cells;
   options.exact.half_spaces = {FloorOf(scenario)};

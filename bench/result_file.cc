@@ -83,6 +83,12 @@ std::string TouchedBy(const record::Recording& recording) {
   return touch ? touch->object : "";
 }
 
+std::map<std::string, int> TrackEventCounts(const record::Recording& recording) {
+  std::map<std::string, int> counts;
+  for (const TrackEvent& event : recording.events) ++counts[event.what];
+  return counts;
+}
+
 std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& scenario,
                        const RunIdentity& identity,
                        const std::map<std::string, std::string>& versions) {
@@ -117,6 +123,7 @@ std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& s
       {"run", RunId(identity)}, {"scenario", identity.scenario}, {"models", identity.models}};
   json["versions"] = versions;
   json["scans_left_out"] = result.scans_left_out;
+  json["track_events"] = TrackEventCounts(result.recording);
   json["safety_events"] = Json::array();
   for (const SafetyEvent& event : result.recording.safety) {
     json["safety_events"].push_back({{"t_s", event.t.seconds()},

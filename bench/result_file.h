@@ -11,6 +11,9 @@ namespace sidestep::bench {
 /// The name of what the robot touched first, empty if nothing.
 std::string TouchedBy(const record::Recording& recording);
 
+/// How often tracking has noticed what, by the words of its events.
+std::map<std::string, int> TrackEventCounts(const record::Recording& recording);
+
 /// The text of result.json (every key is in docs/results.md): outcome, metrics, identity, versions;
 /// the whole scenario as run, under "parameters", with the keys of a scenario file; and, under
 /// "wall_clock" alone, everything that may differ between equal runs. Numbers that do not apply are

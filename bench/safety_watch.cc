@@ -19,9 +19,9 @@ sdf::WorldModelOptions OptionsFor(const scenarios::Scenario& scenario, const Epi
 SafetyWatch::SafetyWatch(const scenarios::Scenario& scenario, const EpisodeWorld& world)
     : model_(sdf::MakeWorldModel(OptionsFor(scenario, world))) {}
 
-ObstacleReport SafetyWatch::Observe(const Scan& scan) {
-  model_->Observe(scan);
-  return {scan.t, model_->MovingNow()};
+ObstacleReport SafetyWatch::Observe(std::span<const Scan> scans) {
+  model_->Observe(scans);
+  return {scans.front().t, model_->MovingNow()};
 }
 
 }  // namespace sidestep::bench

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "sidestep/bench/episode_world.h"
 #include "sidestep/core/observations.h"
@@ -15,8 +16,8 @@ class SafetyWatch {
  public:
   SafetyWatch(const scenarios::Scenario& scenario, const EpisodeWorld& world);
 
-  /// What is known after this scan.
-  ObstacleReport Observe(const Scan& scan);
+  /// What is known after these scans of one moment.
+  ObstacleReport Observe(std::span<const Scan> scans);
 
  private:
   std::unique_ptr<sdf::WorldModel> model_;

@@ -1,6 +1,7 @@
 #include "sidestep/bench/scan_order.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -15,33 +16,35 @@ bool ScanOrder::Put(Scan scan, EpisodeTime now) {
   sensor.newest = scan.t;
   sensor.most_late = std::min(std::max(sensor.most_late, now - scan.t), kMostLate);
   if (taken_ && scan.t <= *taken_) return false;
-  const auto at = std::lower_bound(waiting_.begin(), waiting_.end(), scan,
+  const auto at = std::upper_bound(waiting_.begin(), waiting_.end(), scan,
                                    [](const Scan& a, const Scan& b) { return a.t < b.t; });
-  if (at != waiting_.end() && at->t == scan.t) return false;
   waiting_.insert(at, std::move(scan));
   return true;
 }
 
-EpisodeTime ScanOrder::WaitsUntil(const Scan& scan) const {
-  EpisodeTime until = scan.t;
+EpisodeTime ScanOrder::WaitsUntil(EpisodeTime capture) const {
+  EpisodeTime until = capture;
   for (const auto& [name, sensor] : sensors_) {
-    const bool has_come = name == scan.sensor || (sensor.newest && *sensor.newest >= scan.t);
-    if (!has_come) until = std::max(until, scan.t + sensor.most_late);
+    const bool has_come = sensor.newest && *sensor.newest >= capture;
+    if (!has_come) until = std::max(until, capture + sensor.most_late);
   }
   return until;
 }
 
 EpisodeTime ScanOrder::NextDue() const {
   return waiting_.empty() ? EpisodeTime(std::numeric_limits<double>::infinity())
-                          : WaitsUntil(waiting_.front());
+                          : WaitsUntil(waiting_.front().t);
 }
 
-std::optional<Scan> ScanOrder::Take(EpisodeTime now) {
-  if (waiting_.empty() || NextDue() > now) return std::nullopt;
-  Scan scan = std::move(waiting_.front());
-  waiting_.erase(waiting_.begin());
-  taken_ = scan.t;
-  return scan;
+std::vector<Scan> ScanOrder::Take(EpisodeTime now) {
+  std::vector<Scan> scans;
+  if (waiting_.empty() || NextDue() > now) return scans;
+  taken_ = waiting_.front().t;
+  const auto end = std::find_if(waiting_.begin(), waiting_.end(),
+                                [&](const Scan& scan) { return scan.t != *taken_; });
+  std::move(waiting_.begin(), end, std::back_inserter(scans));
+  waiting_.erase(waiting_.begin(), end);
+  return scans;
 }
 
 }  // namespace sidestep::bench

@@ -27,15 +27,15 @@ class ScanOrder {
   explicit ScanOrder(const std::vector<std::string>& sensors);
 
   /// A scan has arrived, of a sensor whose scans come in the order of capture.
-  /// @return whether it is of use: not if one that was captured no earlier has been taken, or one
-  /// of that very moment waits.
+  /// @return whether it is of use: not if one that was captured no earlier has been taken.
   bool Put(Scan scan, EpisodeTime now);
 
   /// When there will be something to take, whatever arrives or not; infinite if nothing waits.
   EpisodeTime NextDue() const;
 
-  /// The scan that was captured first, if it need not wait any more.
-  std::optional<Scan> Take(EpisodeTime now);
+  /// What was captured first, if it need not wait any more: the scans of one moment, in the order
+  /// in which they came; else none.
+  std::vector<Scan> Take(EpisodeTime now);
 
  private:
   struct Sensor {
@@ -43,7 +43,7 @@ class ScanOrder {
     HorizonOffset most_late{0};         // from capture to arrival
   };
 
-  EpisodeTime WaitsUntil(const Scan& scan) const;
+  EpisodeTime WaitsUntil(EpisodeTime capture) const;
 
   std::map<std::string, Sensor> sensors_;
   std::vector<Scan> waiting_;  // in the order of capture

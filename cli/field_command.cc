@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "sidestep/bench/scan_order.h"
 #include "sidestep/bench/sensor_watch.h"
 #include "sidestep/bench/true_world.h"
 #include "sidestep/cli/command.h"
@@ -44,13 +45,25 @@ struct Belief {
 Belief Watch(const Scene& scene, const FieldOptions& options) {
   const auto model = sdf::MakeWorldModel(
       bench::MakeWorldModelOptions(scene.scenario, options.reach_m, scene.world));
-  bench::SensorWatch sensor(scene.world.sensors.front(), /*has_own_clock=*/false);
+  std::vector<bench::SensorWatch> sensors;
+  std::vector<std::string> names;
+  for (const robot::NamedSensor& sensor : scene.world.sensors) {
+    sensors.emplace_back(sensor, /*has_own_clock=*/false);
+    names.push_back(sensor.name);
+  }
+  bench::ScanOrder order(names);
   bool has_seen = false;
-  while (sensor.NextDue().seconds() <= options.time_s) {
-    const EpisodeTime now = sensor.NextDue();
+  while (true) {
+    EpisodeTime now = order.NextDue();
+    for (const bench::SensorWatch& sensor : sensors) now = std::min(now, sensor.NextDue());
+    if (now.seconds() > options.time_s) break;
     scene.world.robot->AdvanceTo(now);
-    if (const std::optional<Scan> scan = sensor.Read(now)) {
-      model->Observe(*scan);
+    for (bench::SensorWatch& sensor : sensors) {
+      if (sensor.NextDue() > now) continue;
+      if (std::optional<Scan> scan = sensor.Read(now)) order.Put(*std::move(scan), now);
+    }
+    for (auto scans = order.Take(now); !scans.empty(); scans = order.Take(now)) {
+      model->Observe(scans);
       has_seen = true;
     }
   }

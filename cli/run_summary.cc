@@ -75,6 +75,14 @@ void PrintOutcome(const bench::EpisodeResult& result, const scenarios::Scenario&
     Print("outside the map  {} places of planned motion: nothing is seen there\n",
           metrics.at("samples_outside_grid"));
   }
+  const std::map<std::string, int> noticed = bench::TrackEventCounts(result.recording);
+  if (const auto too_fast = noticed.find("too_fast"); too_fast != noticed.end()) {
+    Print(
+        "too fast         {} times something was farther off than tracking.max_speed_m_s, {:g} "
+        "m/s, "
+        "allows: it is not followed\n",
+        too_fast->second, scenario.tracking.max_speed_m_s);
+  }
   PrintPlanningTime(result, scenario);
   if (!result.answers_s.empty()) {
     Print("answers          {:.0f} us at p99.9, the longest {:.0f} us, of {}\n",

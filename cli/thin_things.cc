@@ -1,6 +1,8 @@
 #include "sidestep/cli/thin_things.h"
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include "sidestep/cli/console.h"
 #include "sidestep/core/shape.h"
@@ -9,7 +11,11 @@ namespace sidestep::cli {
 
 void WarnOfThinThings(const scenarios::Scenario& scenario) {
   // A camera fills the cells that hold a point, whatever the rule is.
-  if (scenario.sensor.cells != CellRule::kCentre || scenario.sensor.camera) return;
+  const auto loses = [](const scenarios::SensorSettings& sensor) {
+    return sensor.cells == CellRule::kCentre && !sensor.camera;
+  };
+  const std::vector<scenarios::SensorSettings> sensors = scenarios::SensorsOf(scenario);
+  if (!std::all_of(sensors.begin(), sensors.end(), loses)) return;
   const double cell_m = scenario.grid.cell_m;
   const auto check = [&](const std::string& key, const std::string& name, const Shape& shape) {
     const double thickness_m = Thickness(shape);

@@ -96,7 +96,9 @@ scenarios::Scenario LoadOverridden(const std::string& name, const Overrides& ove
             overrides.knowledge ? "--knowledge" : nullptr);
   CheckWord(scenario, "predictor", scenario.predictor, sdf::PredictorNames(),
             overrides.predictor ? "--predictor" : nullptr);
-  CheckWord(scenario, "sensor.name", scenario.sensor.name, SensorNames());
+  for (const scenarios::SensorSettings& sensor : scenarios::SensorsOf(scenario)) {
+    CheckWord(scenario, sensor.path + ".name", sensor.name, SensorNames());
+  }
   for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
     const std::string& appearance = scenario.moving_obstacles[i].appearance;
     if (appearance.empty()) continue;

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "sidestep/core/tag_track.h"
 #include "sidestep/hardware/body_pose.h"
 #include "sidestep/hardware/tag_detector.h"
-#include "sidestep/hardware/tag_track.h"
 #include "sidestep/robot/frame_source.h"
 #include "sidestep/robot/sensor.h"
 
@@ -43,7 +43,7 @@ struct TagSensorOptions {
 };
 
 /// Bodies that a camera knows by their tags, as observations with covariance: found in each
-/// picture, located by all of their tags that are seen, gated and followed (hardware/tag_track.h).
+/// picture, located by all of their tags that are seen, gated and followed (core/tag_track.h).
 ///
 /// An observation is what was seen, at the time of capture, once it belongs to a track; it is not
 /// the filter's estimate, because who predicts it filters it. What is not found, or does not fit,

@@ -152,6 +152,12 @@ struct Safety {
   double tool_speed_m_s = std::numeric_limits<double>::infinity();
 };
 
+/// How what moves is followed.
+struct Tracking {
+  double coast_s = 1;        ///< how long what is not seen goes on as predicted
+  double max_speed_m_s = 4;  ///< what is faster, from one scan to the next, is another thing
+};
+
 /// How the planner knows what never moves.
 enum class StaticWorld {
   kOccupancy,  ///< as the sensor sees it: by cells
@@ -207,7 +213,10 @@ struct Scenario {
   double longest_latency_s() const { return latency == Latency::kNone ? 0 : latency_s; }
 
   Safety safety;
+  Tracking tracking;
   SensorSettings sensor;
+  std::vector<SensorSettings> more_sensors;  ///< beside it
+  EvidenceSettings evidence;                 ///< of what depth cameras see
   std::uint64_t seed = 1;
 
   std::map<std::string, std::string> choices;  ///< what was chosen, by the choice's name
@@ -247,6 +256,12 @@ void ScaleSpeeds(Scenario& scenario, double factor);
 /// coordinate.
 /// @throws std::invalid_argument with what is wrong, as of ConvexPolytope.
 ConvexMesh MakeConvexMesh(const std::vector<Eigen::Vector3d>& vertices_m);
+
+/// All sensors of a scenario, in the file's order.
+std::vector<SensorSettings> SensorsOf(const Scenario& scenario);
+/// The scenario with this sensor and no other. One that has a name of its own has a seed of its
+/// own: two cameras do not err alike.
+Scenario WithSensor(Scenario scenario, const SensorSettings& sensor);
 
 /// The folder of the scenario's robot. @throws InputError at `robot.model` if there is none.
 std::string RobotFolder(const Scenario& scenario, const ModelFolders& models);

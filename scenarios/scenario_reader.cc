@@ -12,6 +12,7 @@
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
 #include "sidestep/core/model_name.h"
+#include "sidestep/core/random.h"
 #include "sidestep/core/utf8.h"
 #include "sidestep/core/yaml_reader.h"
 #include "sidestep/scenarios/scenario.h"
@@ -130,11 +131,6 @@ void ReadWorkspace(const YamlReader& top, Scenario& scenario) {
     scenario.grid.size[static_cast<std::size_t>(axis)] = static_cast<int>(n);
   }
   map.CheckNoUnknownKeys();
-}
-
-bool IsPlainName(const std::string& name) {
-  return std::all_of(name.begin(), name.end(),
-                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; });
 }
 
 std::string ReadName(const YamlReader& map, std::set<std::string>& names) {
@@ -540,10 +536,32 @@ void ReadSafety(const YamlReader& top, Scenario& scenario) {
   map.CheckNoUnknownKeys();
 }
 
+void ReadTracking(const YamlReader& top, Tracking& tracking) {
+  if (!top.Has("tracking")) return;
+  const YamlReader map = top.GetMap("tracking");
+  const auto at_most = [&](const char* key, double value, double most) {
+    if (value > most) {
+      map.Fail(key, "must be at most " + ShortestText(most) + ", is " + ShortestText(value));
+    }
+    return value;
+  };
+  if (map.Has("coast_s")) {
+    tracking.coast_s = at_most("coast_s", map.GetNonNegative("coast_s"), 10);
+  }
+  if (map.Has("max_speed_m_s")) {
+    tracking.max_speed_m_s = at_most("max_speed_m_s", map.GetPositive("max_speed_m_s"), 100);
+  }
+  map.CheckNoUnknownKeys();
+}
+
 void ReadPerception(const YamlReader& top, Scenario& scenario) {
   scenario.knowledge = top.GetString("knowledge");
   scenario.predictor = top.Has("predictor") ? top.GetString("predictor") : "kalman_cv";
-  scenario.sensor = ReadSensorSettings(top.GetMap("sensor"));
+  ReadTracking(top, scenario.tracking);
+  scenario.more_sensors = ReadSensors(top);
+  scenario.evidence = ReadEvidence(top, scenario.more_sensors);
+  scenario.sensor = std::move(scenario.more_sensors.front());
+  scenario.more_sensors.erase(scenario.more_sensors.begin());
   const int seed = top.GetInt("seed");
   if (seed < 0) top.Fail("seed", "must be >= 0, is " + std::to_string(seed));
   scenario.seed = static_cast<std::uint64_t>(seed);
@@ -757,6 +775,20 @@ ConvexMesh MakeConvexMesh(const std::vector<Eigen::Vector3d>& vertices_m) {
     throw std::invalid_argument("are a solid that is too thin for its size");
   }
   return {hull};
+}
+
+std::vector<SensorSettings> SensorsOf(const Scenario& scenario) {
+  std::vector<SensorSettings> sensors = {scenario.sensor};
+  sensors.insert(sensors.end(), scenario.more_sensors.begin(), scenario.more_sensors.end());
+  return sensors;
+}
+
+Scenario WithSensor(Scenario scenario, const SensorSettings& sensor) {
+  scenario.sensor = sensor;
+  scenario.more_sensors.clear();
+  const std::string name = NameOf(sensor);
+  if (name != sensor.name) scenario.seed = RandomStream(scenario.seed, "sensor " + name).Bits();
+  return scenario;
 }
 
 std::string RobotFolder(const Scenario& scenario, const ModelFolders& models) {

@@ -251,7 +251,12 @@ std::string ToYaml(const Scenario& scenario) {
   if (has_robot) text += PlannerText(scenario);
   line("knowledge: " + Quoted(scenario.knowledge));
   line("predictor: " + Quoted(scenario.predictor));
-  text += ToYaml(scenario.sensor);
+  line("tracking: {coast_s: " + Number(scenario.tracking.coast_s) +
+       ", max_speed_m_s: " + Number(scenario.tracking.max_speed_m_s) + "}");
+  const std::vector<SensorSettings> sensors = SensorsOf(scenario);
+  text += ToYaml(sensors);
+  const auto has_camera = [](const SensorSettings& sensor) { return sensor.camera.has_value(); };
+  if (std::any_of(sensors.begin(), sensors.end(), has_camera)) text += ToYaml(scenario.evidence);
   line("seed: " + std::to_string(scenario.seed));
   return text;
 }

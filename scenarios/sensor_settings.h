@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "sidestep/core/cell_touch.h"
 #include "sidestep/core/pose.h"
@@ -29,7 +30,28 @@ struct CameraSettings {
   double range_m = 5;              ///< farther things are not measured
   double noise_per_m = 0;          ///< depth z has the standard deviation noise_per_m z^2 (stereo)
   double pixel_dropout = 0;        ///< probability that a pixel has no depth
-  std::string unseen = "remembered";  ///< a word of sdf/map/scan_map.h
+  /// Probability that a pixel at an edge of depth measures somewhere between near and far.
+  double flying_pixels = 0;
+  /// Neighbouring pixels whose depths differ by more than this have an edge between them. A pixel
+  /// between two edges, in depth as in the image, is dropped; 0: none is.
+  double edge_m = 0.1;
+  std::string unseen = "remembered";  ///< a word of sdf/map/evidence_map.h
+  /// The robot's pixels are measured like all others, and what is within this of where the robot's
+  /// model was at the time of capture is taken for the robot; else they are known to be its own.
+  bool sees_robot = false;
+  double robot_margin_m = 0.03;
+  /// Where it truly stands, from where it is believed to stand.
+  Eigen::Vector3d misplaced_m = Eigen::Vector3d::Zero();
+};
+
+/// What it takes for a camera's cell to be filled or free: sdf/map/evidence_map.h has the meaning.
+struct EvidenceSettings {
+  bool single_frames = false;  ///< each image is taken at its word, and the rest does not count
+  double hit = 0.7, miss = 1.4, least = -2.8, most = 2.8;  ///< log-odds
+  int settle_scans = 10;
+  double decay_per_s = 30;
+  double noise_sigmas = 4;
+  int least_cells = 6;
 };
 
 /// A camera that finds tags on the moving things and says where they are. At distance d the error
@@ -41,6 +63,15 @@ struct TagSettings {
   double along_noise_per_m = 0.002;                      ///< times d^2
   double rotation_noise_rad = 0;                         ///< about each axis
   double range_m = 5;                                    ///< farther things are not found
+  double size_m = 0;         ///< the edge of a tag, all of which must be in sight; 0: its middle
+  double partly_hidden = 0;  ///< probability that it is found, badly, if only a part of it is
+  // What goes wrong at times. Probabilities: for each tag in each scan, of swaps and phantoms for
+  // each scan.
+  double flips = 0;        ///< it is turned by the other pose that explains what is seen
+  double outliers = 0;     ///< it is anywhere within outlier_m of where it is
+  double outlier_m = 0.5;  ///< > 0
+  double swaps = 0;        ///< two tags are taken for each other
+  double phantoms = 0;     ///< one is found where there is none
 };
 
 /// A colour or infrared camera whose pictures are searched for the tags that are printed on boxes,
@@ -59,7 +90,8 @@ struct TagImageSettings {
 
 /// A sensor as the scenario describes it.
 struct SensorSettings {
-  std::string name = "occupancy";
+  std::string name = "occupancy";  ///< of its kind
+  std::string label = {};          ///< what it is called, if not as its kind is
   double rate_hz = 0;
   /// Which cells a solid fills. A camera's are those that hold a point of a surface, whatever it
   /// says.
@@ -73,6 +105,7 @@ struct SensorSettings {
   std::optional<CameraSettings> camera;
   std::optional<TagSettings> tags;
   std::optional<TagImageSettings> tag_images;
+  std::string path = "sensor";  ///< in the file: `sensor`, or `sensors[0]`
 };
 
 /// The pose X_WC of a camera that looks from one point to another, its image upright (where it
@@ -80,10 +113,22 @@ struct SensorSettings {
 /// z forward.
 Pose PoseOfCamera(const Eigen::Vector3d& position_m, const Eigen::Vector3d& look_at_m);
 
-/// Reads the map `sensor`. @throws InputError FILE:LINE: KEY: WHY.
-SensorSettings ReadSensorSettings(const YamlReader& sensor);
+/// What a sensor is called.
+std::string NameOf(const SensorSettings& sensor);
 
-/// The lines of YAML that ReadSensorSettings reads back to an equal value, with `sensor:` on top.
-std::string ToYaml(const SensorSettings& settings);
+/// The most sensors that a scenario may have.
+inline constexpr std::size_t kMostSensors = 8;
+
+/// Reads the map `sensor` and the list `sensors`: one of them must be there, and no two sensors
+/// have the same label. One without a label is called as its kind is, with a number from the second
+/// of that kind on. @throws InputError FILE:LINE: KEY: WHY.
+std::vector<SensorSettings> ReadSensors(const YamlReader& top);
+
+/// Reads `evidence`, if it is there. @throws InputError, also where no sensor has a camera.
+EvidenceSettings ReadEvidence(const YamlReader& top, const std::vector<SensorSettings>& sensors);
+
+/// The lines of YAML that the two above read back to equal values.
+std::string ToYaml(const std::vector<SensorSettings>& sensors);
+std::string ToYaml(const EvidenceSettings& evidence);
 
 }  // namespace sidestep::scenarios

@@ -80,7 +80,7 @@ bool IsRandom(const WalkMotion& motion) {
 
 void AddChangedNoise(const SensorSettings& sensor, std::vector<std::string>& changed) {
   const auto add = [&](const char* key, bool is_random) {
-    if (is_random) changed.push_back(std::string("sensor.") + key);
+    if (is_random) changed.push_back(sensor.path + "." + key);
   };
   add("jitter_s", sensor.jitter_s > 0);
   add("dropout", sensor.dropout > 0 && sensor.dropout < 1);
@@ -89,7 +89,8 @@ void AddChangedNoise(const SensorSettings& sensor, std::vector<std::string>& cha
                      sensor.noise->position_noise_m > 0);
   }
   if (sensor.camera) {
-    add("camera", sensor.camera->noise_per_m > 0 || sensor.camera->pixel_dropout > 0);
+    add("camera", sensor.camera->noise_per_m > 0 || sensor.camera->pixel_dropout > 0 ||
+                      sensor.camera->flying_pixels > 0);
   }
   if (sensor.tags) {
     add("tags", sensor.tags->across_noise > 0 || sensor.tags->along_noise_per_m > 0 ||
@@ -142,7 +143,7 @@ std::vector<std::string> WhatTheSeedChanges(const Scenario& scenario) {
       changed.push_back("moving_obstacles[" + std::to_string(i) + "].motion." + kind);
     }
   }
-  AddChangedNoise(scenario.sensor, changed);
+  for (const SensorSettings& sensor : SensorsOf(scenario)) AddChangedNoise(sensor, changed);
   return changed;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cctype>
 #include <string>
 
 #include "sidestep/core/joined.h"
@@ -23,6 +25,12 @@ inline std::string Quoted(const std::string& text) {
     quoted += c == '\n' ? std::string("\\n") : std::string(1, c);
   }
   return "\"" + quoted + "\"";
+}
+
+/// Whether a text is fit for a name: letters, digits, _ and -.
+inline bool IsPlainName(const std::string& name) {
+  return std::all_of(name.begin(), name.end(),
+                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; });
 }
 
 }  // namespace sidestep::scenarios

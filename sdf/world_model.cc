@@ -37,21 +37,30 @@ class MappedWorld : public WorldModel {
  public:
   explicit MappedWorld(const WorldModelOptions& options)
       : options_(options),
-        scan_map_(options.grid, options.unseen),
+        scan_map_(options.grid, options.evidence, options.views),
         static_map_(options.convention) {}
 
-  void Observe(const Scan& scan) final {
-    if (t_scan_ && scan.t <= *t_scan_) {
+  void Observe(std::span<const Scan> scans) final {
+    const auto is_late = [&](const Scan& scan) { return t_scan_ && scan.t <= *t_scan_; };
+    const auto is_other = [&](const Scan& scan) { return scan.t != scans.front().t; };
+    if (scans.empty() || std::any_of(scans.begin(), scans.end(), is_late) ||
+        std::any_of(scans.begin(), scans.end(), is_other)) {
       throw std::invalid_argument("WorldModel: scans must come in the order of capture");
     }
+    const EpisodeTime t = scans.front().t;
     Stopwatch stopwatch;
-    occupancy_ = &scan_map_.Update(scan);
-    LearnObjects(scan);
-    rule_ = scan.kind == ScanKind::kSolid ? options_.cells : CellRule::kTouched;
+    std::vector<ObjectObservation> objects;
+    rule_ = CellRule::kTouched;
+    for (const Scan& scan : scans) {
+      occupancy_ = &scan_map_.Update(scan);
+      objects.insert(objects.end(), scan.objects.begin(), scan.objects.end());
+      if (scan.kind == ScanKind::kSolid) rule_ = options_.cells;
+    }
+    LearnObjects(objects, t);
     const OccupancyGrid& unexplained = Unexplained();
     times_.map_s += stopwatch.Lap();
-    Learn(unexplained, scan.t);
-    t_scan_ = scan.t;
+    Learn(unexplained, t);
+    t_scan_ = t;
   }
 
   const OccupancyGrid& Occupancy() const final { return *occupancy_; }
@@ -73,12 +82,12 @@ class MappedWorld : public WorldModel {
   WorldModelTimes TakeTimes() final { return std::exchange(times_, {}); }
 
  protected:
-  // Takes in the named objects of a scan. To one who does not look ahead they are solids like
-  // others.
-  virtual void LearnObjects(const Scan& scan) {
-    if (scan.objects.empty()) return;
+  // Takes in the objects that are named at time t. To one who does not look ahead they are solids
+  // like others.
+  virtual void LearnObjects(const std::vector<ObjectObservation>& objects, EpisodeTime) {
+    if (objects.empty()) return;
     with_objects_ = *occupancy_;
-    FillObjects(scan.objects, options_.cells, &with_objects_);
+    FillObjects(objects, options_.cells, &with_objects_);
     occupancy_ = &with_objects_;
   }
   // Takes in what is filled at time t.
@@ -93,12 +102,12 @@ class MappedWorld : public WorldModel {
                                             options_.max_distance_m, options_.exact);
   }
 
-  // Which cells solids fill in the latest scan.
+  // Which cells solids fill in the latest scans.
   CellRule rule() const { return rule_; }
 
   const WorldModelOptions options_;
   ScanMap scan_map_;
-  OccupancyGrid with_objects_;                       // what a scan and its named objects fill
+  OccupancyGrid with_objects_;                       // what scans and their named objects fill
   const OccupancyGrid* occupancy_ = &with_objects_;  // by the latest scan
   StaticMap static_map_;
   std::optional<EpisodeTime> t_scan_;  // of the latest scan
@@ -139,6 +148,16 @@ class FrozenWorld final : public MappedWorld {
   void Learn(const OccupancyGrid& occupancy, EpisodeTime) override { static_map_.Set(occupancy); }
 };
 
+NamedObjectsOptions OptionsOfNamed(const WorldModelOptions& options) {
+  NamedObjectsOptions named;
+  named.cell_m = options.grid.cell_m;
+  named.max_distance_m = options.max_distance_m + LargestGrowth(options);
+  named.coast = options.coast;
+  if (options.remembers_lost) named.keep_within = options.grid;
+  if (options.gates_named_objects) named.gates = GatesOfTags(options.max_speed_m_s, options.coast);
+  return named;
+}
+
 // Knowledge::kPrediction
 class PredictedWorld final : public MappedWorld {
  public:
@@ -146,9 +165,11 @@ class PredictedWorld final : public MappedWorld {
       : MappedWorld(options),
         predictor_(MakePredictor(options.predictor)),
         tracker_(options.grid, {.max_distance_m = options.max_distance_m + LargestGrowth(options),
-                                .convention = options.convention}),
-        named_objects_(options.grid.cell_m, options.max_distance_m + LargestGrowth(options),
-                       options.remembers_lost ? std::optional(options.grid) : std::nullopt) {}
+                                .max_speed_m_s = options.max_speed_m_s,
+                                .least_cells = options.evidence.least_cells,
+                                .convention = options.convention,
+                                .coast = options.coast}),
+        named_objects_(OptionsOfNamed(options)) {}
 
   std::vector<PredictedObject> DescribeObjects(
       const std::vector<EpisodeTime>& times) const override {
@@ -164,7 +185,11 @@ class PredictedWorld final : public MappedWorld {
     return described;
   }
 
-  std::vector<TrackEvent> TakeEvents() override { return tracker_.TakeEvents(); }
+  std::vector<TrackEvent> TakeEvents() override {
+    std::vector<TrackEvent> events = named_objects_.TakeEvents();
+    for (TrackEvent& event : tracker_.TakeEvents()) events.push_back(std::move(event));
+    return events;
+  }
 
   std::vector<ObstacleState> MovingNow() const override {
     std::vector<ObstacleState> moving;
@@ -209,10 +234,13 @@ class PredictedWorld final : public MappedWorld {
     return [=](EpisodeTime t) { return doubt_m(t) + stray_m(t); };
   }
 
-  void LearnObjects(const Scan& scan) override { named_objects_.Update(scan.objects, scan.t); }
+  void LearnObjects(const std::vector<ObjectObservation>& objects, EpisodeTime t) override {
+    named_objects_.Update(objects, t);
+  }
 
   void Learn(const OccupancyGrid& occupancy, EpisodeTime t) override {
-    const TrackerTimes times = tracker_.Update(occupancy, t);
+    const TrackerTimes times =
+        tracker_.Update(occupancy, t, {scan_map_.seen(), scan_map_.once_free()});
     times_.segment_s += times.segment_s;
     times_.track_s += times.track_s;
     Stopwatch stopwatch;
@@ -272,7 +300,7 @@ class KnownWorld final : public MappedWorld {
   }
 
  private:
-  void LearnObjects(const Scan&) override {}  // the truth is known
+  void LearnObjects(const std::vector<ObjectObservation>&, EpisodeTime) override {}  // it is known
 
   void Learn(const OccupancyGrid& occupancy, EpisodeTime t) override {
     Stopwatch stopwatch;
@@ -331,6 +359,9 @@ std::unique_ptr<WorldModel> MakeWorldModel(const WorldModelOptions& options) {
   CheckGridSpec(options.grid);
   if (!(options.max_distance_m > 0)) {
     throw std::invalid_argument("WorldModel: max_distance_m must be > 0");
+  }
+  if (!(options.coast.seconds() >= 0) || !(options.max_speed_m_s > 0)) {
+    throw std::invalid_argument("WorldModel: coast must be >= 0 and max_speed_m_s > 0");
   }
   if (!(options.growth_sigmas >= 0) || !(options.growth_limit_m >= 0) ||
       !(options.stray_m_s2 >= 0) || !(options.stray_s >= 0)) {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,8 +37,9 @@ inline constexpr Knowledge kAllKnowledge[] = {Knowledge::kStatic, Knowledge::kEx
 
 struct WorldModelOptions {
   Knowledge knowledge = Knowledge::kPrediction;
-  std::string predictor = "kalman_cv";            ///< a name of sdf/prediction/registry.h
-  UnseenSpace unseen = UnseenSpace::kRemembered;  ///< of scans of surfaces
+  std::string predictor = "kalman_cv";      ///< a name of sdf/prediction/registry.h
+  std::map<std::string, CameraView> views;  ///< of sensors that see surfaces, by name
+  EvidenceOptions evidence;                 ///< of their scans
   /// Under prediction, moving things are taken to be thicker by so many standard deviations of
   /// where they are predicted to be, in the worst direction, but by no more than the limit [m].
   double growth_sigmas = 0, growth_limit_m = 0.1;
@@ -44,6 +47,13 @@ struct WorldModelOptions {
   /// [m/s^2], reckoned for at most so long [s]: by then one has looked again, or has stopped. What
   /// is near already is not thought to be touched, but to be left.
   double stray_m_s2 = 0, stray_s = 0;
+  /// How long what is not seen goes on as predicted, and what is faster from one scan to the next
+  /// than anything that is followed (sdf/tracking/).
+  HorizonOffset coast{1};
+  double max_speed_m_s = 4;
+  /// Named objects may be wrong, and pass gates (sdf/tracking/named_objects.h); else whoever names
+  /// them has judged them. Only what predicts follows them.
+  bool gates_named_objects = false;
   /// A named object that was seen last inside the grid is not forgotten: it is somewhere near.
   bool remembers_lost = false;
   GridSpec grid;              ///< in W
@@ -74,10 +84,13 @@ class WorldModel {
  public:
   virtual ~WorldModel() = default;
 
-  /// Takes in a scan, in the order of capture.
-  virtual void Observe(const Scan& scan) = 0;
+  /// Takes in the scans, of one sensor or several, that were captured at one moment; moments come
+  /// in their order.
+  /// @throws std::invalid_argument for none, or of a moment that is not after the last.
+  virtual void Observe(std::span<const Scan> scans) = 0;
+  void Observe(const Scan& scan) { Observe({&scan, 1}); }
 
-  /// What the latest scan said is filled, in the grid of the options.
+  /// What is filled after the latest scans, in the grid of the options.
   virtual const OccupancyGrid& Occupancy() const = 0;
 
   /// The belief after the latest scan, as an immutable snapshot. Needs at least one scan.

@@ -30,7 +30,8 @@ constexpr Entry kSensors[] = {
 
 [[noreturn]] void Fail(const scenarios::Scenario& scenario, const std::string& key,
                        const std::string& why) {
-  throw scenarios::WrongValue(scenario, "sensor." + key, why, {"sensor.name"});
+  const std::string& path = scenario.sensor.path;
+  throw scenarios::WrongValue(scenario, path + "." + key, why, {path + ".name"});
 }
 
 }  // namespace

@@ -22,7 +22,8 @@ std::string MeaningOfSensor(const std::string& name);
 /// empty: none. @throws InputError if it is missing, or one of another sensor is there.
 void CheckSensorSettings(const scenarios::Scenario& scenario, std::string_view settings);
 
-/// Makes a scenario's sensor in a world, which must outlive it.
+/// Makes a scenario's sensor in a world, which must outlive it: of several, each from a scenario
+/// that has it alone (scenarios::WithSensor).
 using SensorMaker =
     std::function<std::unique_ptr<robot::Sensor>(const scenarios::Scenario&, const World&)>;
 

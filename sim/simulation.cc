@@ -57,9 +57,9 @@ Simulation::Simulation(const scenarios::Scenario& scenario, const robot::RobotMo
       truth_(world_),
       robot_(std::make_unique<SimulatedRobot>(
           robot, &world_, [this] { truth_.Observe(); }, scenario.velocity_limits ? 1 : kUnlimited,
-          SafetyOf(scenario, robot))),
-      sensor_name_(scenario.sensor.name),
-      sensor_(make_sensor(scenario, world_)) {}
+          SafetyOf(scenario, robot))) {
+  MakeSensors(scenario, make_sensor);
+}
 
 Simulation::Simulation(const scenarios::Scenario& scenario, const ModelFolders& models,
                        const SensorMaker& make_sensor)
@@ -68,8 +68,15 @@ Simulation::Simulation(const scenarios::Scenario& scenario, const ModelFolders& 
       world_(scenario, LoadMujocoModel(model_xml_, scenario.file + ": its world"), {},
              Eigen::VectorXd()),
       truth_(world_),
-      robot_(std::make_unique<NoRobot>(&world_)),
-      sensor_name_(scenario.sensor.name),
-      sensor_(make_sensor(scenario, world_)) {}
+      robot_(std::make_unique<NoRobot>(&world_)) {
+  MakeSensors(scenario, make_sensor);
+}
+
+void Simulation::MakeSensors(const scenarios::Scenario& scenario, const SensorMaker& make_sensor) {
+  for (const scenarios::SensorSettings& sensor : scenarios::SensorsOf(scenario)) {
+    owned_sensors_.push_back(make_sensor(scenarios::WithSensor(scenario, sensor), world_));
+    sensors_.push_back({NameOf(sensor), owned_sensors_.back().get()});
+  }
+}
 
 }  // namespace sidestep::sim

@@ -15,7 +15,7 @@
 
 namespace sidestep::sim {
 
-/// Everything simulated of one episode: the world, the robot that moves in it, the sensor that sees
+/// Everything simulated of one episode: the world, the robot that moves in it, the sensors that see
 /// it, and the truth about it, at time 0. One thread at a time; any number of simulations in one
 /// process do not influence each other.
 class Simulation {
@@ -34,8 +34,8 @@ class Simulation {
   Simulation& operator=(const Simulation&) = delete;
 
   robot::RobotInterface& robot() { return *robot_; }
-  robot::Sensor& sensor() { return *sensor_; }
-  std::vector<robot::NamedSensor> sensors() { return {{sensor_name_, sensor_.get()}}; }
+  robot::Sensor& sensor() { return *sensors_.front().sensor; }  ///< the first, or only one
+  const std::vector<robot::NamedSensor>& sensors() { return sensors_; }
   robot::WorldTruth& truth() { return truth_; }
   const World& world() const { return world_; }
 
@@ -44,13 +44,15 @@ class Simulation {
   const std::vector<std::string>& obstacles() const { return obstacles_; }  ///< mocap bodies
 
  private:
+  void MakeSensors(const scenarios::Scenario& scenario, const SensorMaker& make_sensor);
+
   std::string model_xml_;
   std::vector<std::string> joints_, obstacles_;
   World world_;
   SimulatedTruth truth_;
   std::unique_ptr<robot::RobotInterface> robot_;
-  std::string sensor_name_;
-  std::unique_ptr<robot::Sensor> sensor_;
+  std::vector<std::unique_ptr<robot::Sensor>> owned_sensors_;
+  std::vector<robot::NamedSensor> sensors_;
 };
 
 }  // namespace sidestep::sim

@@ -6,6 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "sidestep/sdf/tracking/object_tracker.h"
+
 namespace sidestep::bench {
 namespace {
 
@@ -53,6 +55,12 @@ std::optional<Eigen::Vector3d> PredictedPosition(const PredictedObject& object, 
 }
 
 }  // namespace
+
+double ThingsMoved(const record::Recording& recording) {
+  return static_cast<double>(std::count_if(
+      recording.events.begin(), recording.events.end(),
+      [](const TrackEvent& event) { return event.what == sdf::track_event::kMoved; }));
+}
 
 double PredictionError(const record::Recording& recording, HorizonOffset ahead) {
   double sum = 0, count = 0;

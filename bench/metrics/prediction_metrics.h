@@ -5,6 +5,10 @@
 
 namespace sidestep::bench {
 
+/// How often tracking has said of a thing that it begins to move; one that rests in between counts
+/// again.
+double ThingsMoved(const record::Recording& recording);
+
 /// How far predictions were off [m]: the root mean square, over all planning cycles and the objects
 /// in them, of the distance from where the box around an object was predicted to be `ahead` of the
 /// cycle to where the obstacle truly was then. An object is taken for the obstacle that was nearest

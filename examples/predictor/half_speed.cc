@@ -17,7 +17,7 @@ class HalfSpeedPredictor final : public ObstaclePredictor {
     // Sure of nothing but the sighting: as far off as the object may have gone.
     motion.covariance_m2 = [seen, v_WO](EpisodeTime t) -> Eigen::Matrix3d {
       const double gone_m = v_WO.norm() * (t - seen.t).seconds();
-      return (seen.sigma_m * seen.sigma_m + gone_m * gone_m) * Eigen::Matrix3d::Identity();
+      return seen.covariance_m2 + Isotropic(gone_m);
     };
     return motion;
   }

@@ -1,53 +1,55 @@
 #pragma once
 
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "sidestep/core/cell_touch.h"
 #include "sidestep/core/grid.h"
 #include "sidestep/core/observations.h"
+#include "sidestep/sdf/map/evidence_map.h"
 #include "sidestep/sdf/map/occupancy_from_scan.h"
 
 namespace sidestep::sdf {
 
-/// What to take for true of space that a camera does not see: behind things, outside its view.
-enum class UnseenSpace {
-  kFree,        ///< nothing is there
-  kFilled,      ///< something solid is there
-  kRemembered,  ///< what was last seen there; nothing, where nobody ever looked
-};
-/// "free", "filled", "remembered".
-std::string ToString(UnseenSpace unseen);
-/// @throws std::invalid_argument for another word.
-UnseenSpace UnseenSpaceFromString(const std::string& word);
-
-/// Turns scans into occupancy. A scan of solids (ScanKind::kSolid) tells everything: filled are the
-/// cells that hold a point. In a scan of surfaces, a ray leads from the sensor to each point: the
-/// cells on its way are seen to be free, the cell it ends in is filled, and one that any point lies
-/// in is filled whatever passes through. The rest is unseen.
+/// Turns the scans of one or more sensors into one occupancy. A scan of solids (ScanKind::kSolid)
+/// tells everything that its sensor knows: filled are the cells that hold a point of its latest
+/// one. Scans of surfaces are weighed (sdf/map/evidence_map.h). A cell is filled if any sensor of
+/// solids or the cameras together say so.
 class ScanMap {
  public:
-  /// @throws std::invalid_argument for a bad grid.
-  ScanMap(const GridSpec& grid_W, UnseenSpace unseen);
+  /// @param views of the cameras, by their sensors' names.
+  /// @throws std::invalid_argument for a bad grid or what EvidenceMap throws.
+  ScanMap(const GridSpec& grid_W, const EvidenceOptions& evidence,
+          const std::map<std::string, CameraView>& views);
 
   /// What is filled after this scan, the named objects of the scan left out. Valid until the next
   /// call.
   const OccupancyGrid& Update(const Scan& scan);
 
+  /// Not 0 for each cell that a camera's latest scan looked at; empty: sensors of solids look
+  /// everywhere.
+  std::span<const std::uint8_t> seen() const;
+
+  /// 1 for each cell where what is filled may have come, as EvidenceMap::once_free has it; empty:
+  /// anywhere, for what sensors of solids tell.
+  std::span<const std::uint8_t> once_free() const;
+
  private:
-  void FillUnseen();  // the map as it is where nobody looked
+  void Fuse();
 
-  UnseenSpace unseen_;
-  ScanRasteriser rasteriser_;
-  OccupancyGrid map_;  // after the last scan of surfaces
+  GridSpec grid_W_;
+  EvidenceOptions evidence_;
+  std::map<std::string, CameraView> views_;
+  std::map<std::string, ScanRasteriser> solids_;             // by sensor
+  std::map<std::string, const OccupancyGrid*> solid_cells_;  // of the latest scan of each
+  std::optional<EvidenceMap> surfaces_;                      // once there was one
+  OccupancyGrid fused_;                                      // if there are several of these
+  std::vector<std::uint8_t> fused_once_free_;
 };
-
-/// The cells that a straight line passes through on its way from `start` to `end`, the end's own
-/// left out; only those in the grid. Each is visited once, in order.
-/// Source: J. Amanatides, A. Woo, "A fast voxel traversal algorithm for ray tracing", Eurographics
-/// 1987.
-void VisitCellsOnTheWay(const GridSpec& grid_W, const Eigen::Vector3d& p_WStart,
-                        const Eigen::Vector3d& p_WEnd, std::vector<std::size_t>* cells);
 
 /// Fills the cells of the named objects.
 void FillObjects(const std::vector<ObjectObservation>& objects, CellRule rule,

@@ -47,7 +47,7 @@ double LogLikelihood(const Innovation& innovation) {
 
 struct Imm {
   std::array<MotionModel, kNumModels> models;
-  std::array<MotionEstimate, kNumModels> anchored;
+  std::array<MotionEstimate, kNumModels> now;
   Weights weights;
   EpisodeTime seen;
 };
@@ -73,7 +73,9 @@ Imm Filter(const TrackedObject& object) {
     imm.weights = (log_weights.array() - log_weights.maxCoeff()).exp().max(kLeastWeight);
     imm.weights /= imm.weights.sum();
   }
-  for (int i = 0; i < kNumModels; ++i) imm.anchored[i] = filters[i].AnchoredEstimate();
+  for (int i = 0; i < kNumModels; ++i) {
+    imm.now[i] = object.is_filtered ? filters[i].estimate() : filters[i].AnchoredEstimate();
+  }
   imm.seen = filters.front().t();
   return imm;
 }
@@ -86,7 +88,7 @@ class ImmPredictor final : public ObstaclePredictor {
               const double dt_s = (t - imm.seen).seconds();
               Eigen::Vector3d p_WO = Eigen::Vector3d::Zero();
               for (int i = 0; i < kNumModels; ++i) {
-                const MotionVector x = imm.models[i].move(imm.anchored[i].x, dt_s, nullptr);
+                const MotionVector x = imm.models[i].move(imm.now[i].x, dt_s, nullptr);
                 p_WO += imm.weights(i) * x.segment<3>(kP);
               }
               return Pose::Translation(p_WO);
@@ -94,7 +96,7 @@ class ImmPredictor final : public ObstaclePredictor {
             [imm](EpisodeTime t) -> Eigen::Matrix3d {
               std::array<MotionEstimate, kNumModels> moved;
               for (int i = 0; i < kNumModels; ++i) {
-                moved[i] = Propagate(imm.models[i], imm.anchored[i], (t - imm.seen).seconds());
+                moved[i] = Propagate(imm.models[i], imm.now[i], (t - imm.seen).seconds());
               }
               return Mix(moved, imm.weights).P.topLeftCorner<3, 3>();
             }};

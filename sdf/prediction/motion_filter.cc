@@ -10,8 +10,6 @@ namespace {
 // Over longer ones, what chance does to the rate of turn would not reach the position.
 constexpr double kLongestStep_s = 0.1;
 
-Eigen::Matrix3d Square(double sigma) { return sigma * sigma * Eigen::Matrix3d::Identity(); }
-
 class FilterPredictor final : public ObstaclePredictor {
  public:
   explicit FilterPredictor(const MotionModel& model) : model_(model) {}
@@ -20,7 +18,8 @@ class FilterPredictor final : public ObstaclePredictor {
     MotionFilter filter(model_, object.history.front());
     for (std::size_t n = 1; n < object.history.size(); ++n) filter.Update(object.history[n]);
     const EpisodeTime seen = filter.t();
-    const MotionEstimate estimate = filter.AnchoredEstimate();
+    const MotionEstimate estimate =
+        object.is_filtered ? filter.estimate() : filter.AnchoredEstimate();
     return {[model = model_, estimate, seen](EpisodeTime t) {
               const MotionVector x = model.move(estimate.x, (t - seen).seconds(), nullptr);
               return Pose::Translation(x.segment<3>(kP));
@@ -37,7 +36,7 @@ class FilterPredictor final : public ObstaclePredictor {
 }  // namespace
 
 void AddPriorNoise(int part, MotionMatrix& Q) {
-  if (part == kA) Q.block<3, 3>(kA, kA) += Square(kPriorAcceleration);
+  if (part == kA) Q.block<3, 3>(kA, kA) += Isotropic(kPriorAcceleration);
   if (part == kTurn) Q(kTurn, kTurn) += kPriorTurn * kPriorTurn;
 }
 
@@ -54,10 +53,10 @@ MotionEstimate Propagate(const MotionModel& model, const MotionEstimate& estimat
 }
 
 MotionFilter::MotionFilter(const MotionModel& model, const Sighting& first)
-    : model_(model), t_(first.t), seen_(first.p_WO), sigma_m_(first.sigma_m) {
+    : model_(model), t_(first.t), seen_(first.p_WO), R_m2_(first.covariance_m2) {
   estimate_.x.segment<3>(kP) = first.p_WO;
-  estimate_.P.block<3, 3>(kP, kP) = Square(first.sigma_m);
-  estimate_.P.block<3, 3>(kV, kV) = Square(kPriorSpeed);
+  estimate_.P.block<3, 3>(kP, kP) = first.covariance_m2;
+  estimate_.P.block<3, 3>(kV, kV) = Isotropic(kPriorSpeed);
   AddPriorNoise(kA, estimate_.P);
   AddPriorNoise(kTurn, estimate_.P);
   gain_.setZero();
@@ -65,7 +64,7 @@ MotionFilter::MotionFilter(const MotionModel& model, const Sighting& first)
 
 Innovation MotionFilter::Update(const Sighting& sighting) {
   const MotionEstimate expected = Propagate(model_, estimate_, (sighting.t - t_).seconds());
-  const Eigen::Matrix3d R = Square(sighting.sigma_m);
+  const Eigen::Matrix3d& R = sighting.covariance_m2;
   Innovation innovation;
   innovation.residual_m = sighting.p_WO - expected.x.segment<3>(kP);
   innovation.S_m2 = expected.P.block<3, 3>(kP, kP) + R;
@@ -76,18 +75,17 @@ Innovation MotionFilter::Update(const Sighting& sighting) {
   estimate_.P = I_KH * expected.P * I_KH.transpose() + gain_ * R * gain_.transpose();
   t_ = sighting.t;
   seen_ = sighting.p_WO;
-  sigma_m_ = sighting.sigma_m;
+  R_m2_ = sighting.covariance_m2;
   return innovation;
 }
 
 MotionEstimate MotionFilter::AnchoredEstimate() const {
   MotionEstimate anchored = estimate_;
   anchored.x.segment<3>(kP) = seen_;
-  const Eigen::Matrix3d R = Square(sigma_m_);
-  const Eigen::Matrix<double, kMotionDims, 3> KR = gain_ * R;
+  const Eigen::Matrix<double, kMotionDims, 3> KR = gain_ * R_m2_;
   anchored.P.leftCols<3>() = KR;
   anchored.P.topRows<3>() = KR.transpose();
-  anchored.P.block<3, 3>(kP, kP) = R;
+  anchored.P.block<3, 3>(kP, kP) = R_m2_;
   return anchored;
 }
 

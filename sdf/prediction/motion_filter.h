@@ -75,7 +75,7 @@ class MotionFilter {
   MotionEstimate estimate_;
   Eigen::Matrix<double, kMotionDims, 3> gain_;
   Eigen::Vector3d seen_;
-  double sigma_m_;
+  Eigen::Matrix3d R_m2_;
 };
 
 /// Runs a filter of one model over an object's history and goes on with it. `model` is copied.

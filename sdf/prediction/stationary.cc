@@ -8,9 +8,7 @@ class StationaryPredictor final : public ObstaclePredictor {
   PredictedMotion Predict(const TrackedObject& object) const override {
     const Sighting& latest = object.latest();
     return {[latest](EpisodeTime) { return Pose::Translation(latest.p_WO); },
-            [latest](EpisodeTime) -> Eigen::Matrix3d {
-              return latest.sigma_m * latest.sigma_m * Eigen::Matrix3d::Identity();
-            }};
+            [latest](EpisodeTime) { return latest.covariance_m2; }};
   }
 };
 

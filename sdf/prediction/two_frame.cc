@@ -1,5 +1,7 @@
 #include "sidestep/sdf/prediction/two_frame.h"
 
+#include "sidestep/sdf/prediction/motion_filter.h"
+
 namespace sidestep::sdf {
 namespace {
 
@@ -14,9 +16,12 @@ class TwoFramePredictor final : public ObstaclePredictor {
               return Pose::Translation(latest.p_WO + v_WO * (t - latest.t).seconds());
             },
             [latest, earlier, elapsed_s](EpisodeTime t) -> Eigen::Matrix3d {
-              const double share = elapsed_s > 0 ? (t - latest.t).seconds() / elapsed_s : 0;
-              const double late = (1 + share) * latest.sigma_m, early = share * earlier.sigma_m;
-              return (late * late + early * early) * Eigen::Matrix3d::Identity();
+              const double dt_s = (t - latest.t).seconds();
+              // Of one sighting: it may have any speed.
+              if (!(elapsed_s > 0)) return latest.covariance_m2 + Isotropic(kPriorSpeed * dt_s);
+              const double share = dt_s / elapsed_s;
+              return (1 + share) * (1 + share) * latest.covariance_m2 +
+                     share * share * earlier.covariance_m2;
             }};
   }
 };

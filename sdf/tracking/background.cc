@@ -3,12 +3,6 @@
 #include <iterator>
 
 namespace sidestep::sdf {
-namespace {
-
-constexpr double kLostShare = 0.05;
-
-}  // namespace
-
 Background::Background(const GridSpec& grid) {
   CheckGridSpec(grid);
   is_background_.assign(grid.num_cells(), 0);
@@ -19,7 +13,7 @@ void Background::Absorb(int id, const Component& component) {
   for (const std::size_t cell : component.cells) is_background_[cell] = 1;
 }
 
-std::vector<int> Background::ReleaseVanished(const OccupancyGrid& occupancy) {
+std::vector<int> Background::ReleaseVanished(const OccupancyGrid& occupancy, double lost_share) {
   std::vector<int> released;
   for (auto it = owned_.begin(); it != owned_.end();) {
     Owned& owned = it->second;
@@ -29,7 +23,7 @@ std::vector<int> Background::ReleaseVanished(const OccupancyGrid& occupancy) {
       return true;
     });
     const double held = static_cast<double>(owned.cells.size());
-    if (held >= (1 - kLostShare) * static_cast<double>(owned.num_absorbed)) {
+    if (held >= (1 - lost_share) * static_cast<double>(owned.num_absorbed)) {
       ++it;
       continue;
     }

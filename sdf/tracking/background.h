@@ -21,10 +21,10 @@ class Background {
   /// Makes a component background, owned by `id` until that is released.
   void Absorb(int id, const Component& component);
 
-  /// Lets go of the cells that are free now. An owner that has lost over 5 % of its cells since it
-  /// was absorbed (one layer of a thing 20 cells long) does not rest any more: all its cells are
-  /// released, so that it is in the foreground as a whole. Returns those owners, ascending.
-  std::vector<int> ReleaseVanished(const OccupancyGrid& occupancy);
+  /// Lets go of the cells that are free now. An owner that has lost more than this share of its
+  /// cells since it was absorbed does not rest any more: all its cells are released, so that it is
+  /// in the foreground as a whole. Returns those owners, ascending.
+  std::vector<int> ReleaseVanished(const OccupancyGrid& occupancy, double lost_share);
 
   /// 1 for each cell that is background, 0 for the others, in the order of GridSpec::Index.
   const std::vector<std::uint8_t>& is_background() const { return is_background_; }

@@ -14,13 +14,6 @@ struct Run {
   std::size_t parent;  // a run of the same component, never a later one
 };
 
-std::array<int, 3> CellAt(const GridSpec& spec, std::size_t index) {
-  const std::size_t nx = static_cast<std::size_t>(spec.size[0]);
-  const std::size_t ny = static_cast<std::size_t>(spec.size[1]);
-  return {static_cast<int>(index % nx), static_cast<int>(index / nx % ny),
-          static_cast<int>(index / (nx * ny))};
-}
-
 bool AllFree(const std::uint8_t* filled, const std::uint8_t* left_out, std::size_t count) {
   std::uint8_t any = 0;
   for (std::size_t n = 0; n < count; ++n) {
@@ -167,6 +160,31 @@ std::vector<Component> FindComponents(const OccupancyGrid& occupancy,
 
 std::vector<Component> FindComponents(const OccupancyGrid& occupancy) {
   return FindComponents(occupancy, std::vector<std::uint8_t>(occupancy.cells.size(), 0));
+}
+
+std::array<int, 3> CellAt(const GridSpec& spec, std::size_t index) {
+  const std::size_t nx = static_cast<std::size_t>(spec.size[0]);
+  const std::size_t ny = static_cast<std::size_t>(spec.size[1]);
+  return {static_cast<int>(index % nx), static_cast<int>(index / nx % ny),
+          static_cast<int>(index / (nx * ny))};
+}
+
+Component MakeComponent(std::vector<std::size_t> cells, const GridSpec& grid) {
+  Component component;
+  component.first = component.last = CellAt(grid, cells.front());
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // of the cells' indices
+  for (const std::size_t index : cells) {
+    const std::array<int, 3> cell = CellAt(grid, index);
+    for (std::size_t a = 0; a < 3; ++a) {
+      component.first[a] = std::min(component.first[a], cell[a]);
+      component.last[a] = std::max(component.last[a], cell[a]);
+      sum(static_cast<Eigen::Index>(a)) += cell[a];
+    }
+  }
+  component.centroid_m =
+      grid.first_center_m + grid.cell_m * (sum / static_cast<double>(cells.size()));
+  component.cells = std::move(cells);
+  return component;
 }
 
 OccupancyGrid CutOut(const Component& component, const GridSpec& grid) {

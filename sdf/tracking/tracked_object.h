@@ -10,11 +10,16 @@
 
 namespace sidestep::sdf {
 
+/// The covariance of an error of this standard deviation [m] along each axis.
+inline Eigen::Matrix3d Isotropic(double sigma_m) {
+  return sigma_m * sigma_m * Eigen::Matrix3d::Identity();
+}
+
 /// Where an object was seen.
 struct Sighting {
   EpisodeTime t;
   Eigen::Vector3d p_WO;
-  double sigma_m = 0.01;  ///< > 0, standard deviation of each coordinate of p_WO
+  Eigen::Matrix3d covariance_m2 = Isotropic(0.01);  ///< of p_WO's error, positive definite
 };
 
 /// What is known of a thing that moves, as it was at the latest scan: a snapshot, so that a
@@ -30,6 +35,10 @@ struct TrackedObject {
   /// The box around its shape, in O [m].
   Eigen::Vector3d box_center_O = Eigen::Vector3d::Zero();
   Eigen::Vector3d box_half_extents_m = Eigen::Vector3d::Zero();
+  /// Its sightings may be wrong, and its shape is known, not seen: it is where a filter says rather
+  /// than where it was seen last.
+  bool is_filtered = false;
+
   /// Of its shape, padded for the field's clamp; shared by all snapshots until the shape changes.
   std::shared_ptr<const SdfGrid> field_O;
 

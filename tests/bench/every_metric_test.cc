@@ -66,6 +66,11 @@ record::Recording SmoothReach(double end_s = 1.5) {
   recording.cycles[0].samples_outside_grid = 7;
   recording.cycles[2].samples_outside_grid = 5;
 
+  recording.events = {{EpisodeTime(0.1), "appeared", 1},
+                      {EpisodeTime(0.2), "moved", 1},
+                      {EpisodeTime(0.3), "rested", 1},
+                      {EpisodeTime(0.4), "moved", 1}};
+
   // One obstacle runs along x at 1 m/s and stops at 1 s; another stands far away. From 0.1 s on it
   // is seen 1 cm too high and expected to go on.
   recording.obstacles = {"post", "ball"};
@@ -131,6 +136,7 @@ constexpr Expected kKnown[] = {
     {"replans_cut_short", 2, 0},
     {"replans_short_of_goal", 1, 0},
     {"samples_outside_grid", 12, 0},
+    {"things_moved", 2, 0},
     // The height alone, until the ball stops: then also how far it was expected to go on.
     {"prediction_error_100ms_m", 0.01, 1e-12},
     {"prediction_error_300ms_m", 0.01, 1e-12},

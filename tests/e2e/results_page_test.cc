@@ -56,8 +56,8 @@ std::set<std::string> KeysOf(const Rows& rows) {
 
 // Leaves by their paths, but for maps whose keys are explained elsewhere; any stage is <stage>.
 void Flatten(const Json& value, const std::string& path, std::map<std::string, Json>& leaves) {
-  const bool is_leaf =
-      path == "parameters" || path == "choices" || path == "drawn" || path == "scans_left_out";
+  const bool is_leaf = path == "parameters" || path == "choices" || path == "drawn" ||
+                       path == "scans_left_out" || path == "track_events";
   if (!value.is_object() || is_leaf) {
     leaves[path] = value;
     return;

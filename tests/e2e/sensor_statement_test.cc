@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <future>
 #include <map>
 #include <memory>
@@ -198,6 +199,7 @@ TEST(DepthCamera, HasTheNoiseThatItSaysAtItsDepth) {
   camera.pixel_dropout = 0.25;
   camera.unseen = "free";
   scenario.sensor.camera = camera;
+  scenario.evidence.single_frames = true;
   const record::Recording recording = Record(scenario);
   std::map<int, int> counts;
   int measured = 0;
@@ -293,6 +295,154 @@ TEST(TagCamera, DoesNotFindWhatIsFarAwayOrBehindSomething) {
     if (is_seen) ++found;
   }
   EXPECT_GT(found, 5);
+}
+
+// Two carts that are in sight all the time, seen without noise.
+scenarios::Scenario TwoTaggedCarts() {
+  scenarios::Scenario scenario = SwingingScenario();
+  scenario.moving_obstacles = {
+      sim::Passing("cart", Box{{0.3, 0.2, 0.2}}, {0.9, -0.9, 0.6}, {0, 1, 0}, 0.15),
+      sim::Passing("other", Box{{0.2, 0.2, 0.3}}, {-0.9, 0.9, 0.3}, {0, -1, 0}, 0.15)};
+  scenario.moving_obstacles[0].rpy_rad = {0.1, -0.2, 0.7};
+  scenario.sensor.name = "tags";
+  scenario.sensor.rate_hz = 50;
+  scenario.sensor.tags = scenarios::TagSettings{
+      .position_m = {2.5, 0, 2.5}, .across_noise = 0, .along_noise_per_m = 0};
+  return scenario;
+}
+
+// In how many scans a fault of some probability shows, by `shows(scan)`.
+void ExpectAsOften(const record::Recording& recording, double probability,
+                   const std::function<int(const record::ObservationRecord&)>& count_in,
+                   int chances_a_scan) {
+  double count = 0;
+  for (const record::ObservationRecord& scan : recording.observations) count += count_in(scan);
+  const double chances = chances_a_scan * static_cast<double>(recording.observations.size());
+  EXPECT_GT(chances, 400);
+  EXPECT_NEAR(count, probability * chances,
+              4 * std::sqrt(probability * (1 - probability) * chances) + 1);
+}
+
+TEST(TagCamera, MisplacesFlipsSwapsAndImaginesTagsAsOftenAsItSays) {
+  constexpr double kOften = 0.1;
+  const auto truth_of = [](const scenarios::Scenario& scenario, const record::SeenObject& seen,
+                           EpisodeTime t) {
+    return PoseAt(scenario.moving_obstacles[seen.id == "cart" ? 0 : 1], t);
+  };
+  struct Fault {
+    const char* name;
+    double scenarios::TagSettings::*probability;
+    int chances_a_scan;
+    // How often it shows in a scan, by how far tags are off [m] and turned [rad].
+    std::function<int(const std::vector<double>& off_m, const std::vector<double>& turned_rad)>
+        count;
+  };
+  const auto above = [](const std::vector<double>& values, double least) {
+    return static_cast<int>(
+        std::count_if(values.begin(), values.end(), [&](double value) { return value > least; }));
+  };
+  const std::vector<Fault> faults = {
+      {"outliers", &scenarios::TagSettings::outliers, 2,
+       [&](const auto& off_m, const auto&) { return above(off_m, 1e-3); }},
+      {"flips", &scenarios::TagSettings::flips, 2,
+       [&](const auto&, const auto& turned_rad) { return above(turned_rad, 0.02); }},
+      {"swaps", &scenarios::TagSettings::swaps, 1,
+       [&](const auto& off_m, const auto&) { return above(off_m, 0.5) == 2 ? 1 : 0; }},
+      {"phantoms", &scenarios::TagSettings::phantoms, 1,
+       [&](const auto& off_m, const auto&) { return off_m.size() == 3 ? 1 : 0; }}};
+  for (const Fault& fault : faults) {
+    SCOPED_TRACE(fault.name);
+    scenarios::Scenario scenario = TwoTaggedCarts();
+    (*scenario.sensor.tags).*fault.probability = kOften;
+    const record::Recording recording = Record(scenario);
+    int num_wrong = 0;
+    ExpectAsOften(
+        recording, kOften,
+        [&](const record::ObservationRecord& scan) {
+          std::vector<double> off_m, turned_rad;
+          for (const record::SeenObject& seen : scan.objects) {
+            const Pose X_WO = truth_of(scenario, seen, scan.t);
+            off_m.push_back((seen.X_WO.translation() - X_WO.translation()).norm());
+            turned_rad.push_back(seen.X_WO.rotation().angularDistance(X_WO.rotation()));
+            if (off_m.size() <= 2 && off_m.back() < 1e-9 && turned_rad.back() < 1e-9) continue;
+            ++num_wrong;
+            if (fault.probability == &scenarios::TagSettings::outliers) {
+              EXPECT_LE(off_m.back(), scenario.sensor.tags->outlier_m);
+            }
+          }
+          return fault.count(off_m, turned_rad);
+        },
+        fault.chances_a_scan);
+    EXPECT_GT(num_wrong, 20);
+  }
+}
+
+// The two poses lean to either side of the line of sight, about the middle of the face.
+TEST(TagCamera, FlipsATagAboutItsLineOfSight) {
+  scenarios::Scenario scenario = TwoTaggedCarts();
+  scenario.horizon_s = 2;
+  scenario.sensor.tags->flips = 1;
+  const record::Recording recording = Record(scenario);
+  ASSERT_GT(recording.observations.size(), 50u);
+  for (const record::ObservationRecord& scan : recording.observations) {
+    ASSERT_EQ(scan.objects.size(), 2u);
+    const Pose truth = PoseAt(scenario.moving_obstacles[0], scan.t);
+    const Pose& flipped = scan.objects[0].X_WO;
+    int num_explained = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3d n_O = Eigen::Vector3d::Unit(axis);
+      for (const double side : {-1.0, 1.0}) {
+        const Eigen::Vector3d p_O =
+            side * n_O.cwiseProduct(HalfExtents(scenario.moving_obstacles[0].shape));
+        const Eigen::Vector3d p_W = truth * p_O;
+        if ((flipped * p_O - p_W).norm() > 1e-6) continue;
+        const Eigen::Vector3d sight = (scenario.sensor.tags->position_m - p_W).normalized();
+        const Eigen::Vector3d n = truth.rotation() * (side * n_O);
+        const Eigen::Vector3d mirrored = 2 * n.dot(sight) * sight - n;
+        EXPECT_LT((flipped.rotation() * (side * n_O) - mirrored).norm(), 1e-6);
+        EXPECT_GT(n.dot(sight), 0) << "it looks at the camera";
+        ++num_explained;
+      }
+    }
+    EXPECT_EQ(num_explained, 1);
+  }
+}
+
+TEST(TagCamera, FindsATagOfSomeSizeOnlyIfAllOfItIsInSightOrBadlyIfItMay) {
+  scenarios::Scenario scenario = SwingingScenario();
+  scenario.static_obstacles = {
+      {"screen", Pose::Translation({1.2, 0.4, 0.6}), Box{{0.02, 0.4, 0.6}}}};
+  scenario.moving_obstacles = {
+      sim::Passing("cart", Sphere{0.1}, {0.8, -0.9, 0.6}, {0, 1, 0}, 0.15)};
+  scenario.sensor.name = "tags";
+  constexpr double kSize_m = 0.2;
+  for (const double partly_hidden : {0.0, 1.0}) {
+    scenario.sensor.tags = scenarios::TagSettings{.position_m = {2, 0.4, 0.6},
+                                                  .across_noise = 0,
+                                                  .along_noise_per_m = 0,
+                                                  .size_m = kSize_m,
+                                                  .partly_hidden = partly_hidden};
+    const record::Recording recording = Record(scenario);
+    int num_parts = 0;
+    for (const record::ObservationRecord& scan : recording.observations) {
+      const Eigen::Vector3d p = PoseAt(scenario.moving_obstacles[0], scan.t).translation();
+      // Where the lines of sight to the tag's sides cross the screen's plane, from its middle.
+      const auto crosses_at = [&](double side_m) {
+        return std::abs((p.y() + side_m - 0.4) * (2 - 1.2) / (2 - p.x()));
+      };
+      const double sides[] = {crosses_at(-kSize_m / 2), crosses_at(kSize_m / 2)};
+      const double nearest = std::min(sides[0], sides[1]), other = std::max(sides[0], sides[1]);
+      if (std::abs(nearest - 0.2) < 0.02 || std::abs(other - 0.2) < 0.02) continue;
+      const bool is_whole = nearest > 0.2, is_part = !is_whole && other > 0.2;
+      EXPECT_EQ(scan.objects.size(), is_whole || (is_part && partly_hidden == 1) ? 1u : 0u)
+          << p.transpose();
+      if (scan.objects.empty()) continue;
+      const double off_m = (scan.objects[0].X_WO.translation() - p).norm();
+      EXPECT_LE(off_m, is_part ? kSize_m / 2 : 1e-9);
+      num_parts += is_part ? 1 : 0;
+    }
+    EXPECT_EQ(num_parts > 3, partly_hidden == 1);
+  }
 }
 
 // Every registered sensor, with the settings that it needs.

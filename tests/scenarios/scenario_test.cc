@@ -104,9 +104,16 @@ sensor:
   dropout: 0.2
   noise: {false_filled: 0.001, false_free: 0.02, position_noise_m: 0.003}
   camera: {position_m: [1, 2, 3], look_at_m: [0.5, 0, 0], field_of_view_rad: 0.9, width: 32,
-           height: 24, range_m: 3.5, noise_per_m: 0.004, pixel_dropout: 0.1, unseen: filled}
+           height: 24, range_m: 3.5, noise_per_m: 0.004, pixel_dropout: 0.1, flying_pixels: 0.3,
+           edge_m: 0.2, unseen: filled, sees_robot: true, robot_margin_m: 0.04,
+           misplaced_m: [0.01, 0, -0.02]}
   tags: {position_m: [3, 2, 1], across_noise: 0.005, along_noise_per_m: 0.006,
          rotation_noise_rad: 0.007, range_m: 2.5}
+sensors:
+  - {name: occupancy, rate_hz: 20}
+  - {name: tags, label: left, rate_hz: 25, tags: {position_m: [0, 2, 1]}}
+evidence: {single_frames: true, hit: 0.5, miss: 0.6, least: -3, most: 4, settle_scans: 5, decay_per_s: 2,
+           noise_sigmas: 3, least_cells: 9}
 seed: 42
 )";
   const Scenario scenario = ParseScenario(text, "odd.yaml");
@@ -127,12 +134,31 @@ seed: 42
   EXPECT_EQ(again.seed, 42u);
   EXPECT_EQ(again.static_world, StaticWorld::kExact);
   EXPECT_EQ(again.sensor.cells, CellRule::kCentre);
-  EXPECT_EQ(ToYaml(again.sensor), ToYaml(scenario.sensor));
+  EXPECT_EQ(ToYaml(SensorsOf(again)), ToYaml(SensorsOf(scenario)));
   EXPECT_EQ(again.sensor.dropout, 0.2);
   EXPECT_EQ(again.sensor.noise->position_noise_m, 0.003);
   EXPECT_EQ(again.sensor.camera->look_at_m, Eigen::Vector3d(0.5, 0, 0));
   EXPECT_EQ(again.sensor.camera->height, 24);
   EXPECT_EQ(again.sensor.camera->unseen, "filled");
+  EXPECT_EQ(again.sensor.camera->flying_pixels, 0.3);
+  EXPECT_EQ(again.sensor.camera->edge_m, 0.2);
+  EXPECT_TRUE(again.sensor.camera->sees_robot);
+  EXPECT_EQ(again.sensor.camera->robot_margin_m, 0.04);
+  EXPECT_EQ(again.sensor.camera->misplaced_m, Eigen::Vector3d(0.01, 0, -0.02));
+  ASSERT_EQ(again.more_sensors.size(), 2u);
+  EXPECT_EQ(NameOf(again.sensor), "occupancy");
+  EXPECT_EQ(NameOf(again.more_sensors[0]), "occupancy_2") << "called like another";
+  EXPECT_EQ(NameOf(again.more_sensors[1]), "left");
+  EXPECT_EQ(again.more_sensors[1].rate_hz, 25);
+  EXPECT_TRUE(again.evidence.single_frames);
+  EXPECT_EQ(again.evidence.hit, 0.5);
+  EXPECT_EQ(again.evidence.miss, 0.6);
+  EXPECT_EQ(again.evidence.least, -3);
+  EXPECT_EQ(again.evidence.most, 4);
+  EXPECT_EQ(again.evidence.settle_scans, 5);
+  EXPECT_EQ(again.evidence.decay_per_s, 2);
+  EXPECT_EQ(again.evidence.noise_sigmas, 3);
+  EXPECT_EQ(again.evidence.least_cells, 9);
   EXPECT_EQ(again.sensor.tags->rotation_noise_rad, 0.007);
   ASSERT_EQ(again.static_obstacles.size(), 3u);
   EXPECT_EQ(again.static_obstacles[0].path, "static_boxes[0]");

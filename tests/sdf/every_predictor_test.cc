@@ -77,7 +77,7 @@ TEST_P(EveryPredictor, IsFiniteAndContinuousBeforeAndAfterThatTime) {
 TEST_P(EveryPredictor, IsAsSureAsTheSightingAtItsTimeAndNoSurerLater) {
   for (const TrackedObject& object : Objects()) {
     const PredictedMotion motion = predictor_->Predict(object);
-    const double variance_m2 = std::pow(object.latest().sigma_m, 2);
+    const double variance_m2 = object.latest().covariance_m2(0, 0);
     const Eigen::Matrix3d seen = motion.covariance_m2(object.latest().t);
     EXPECT_LT((seen - variance_m2 * Eigen::Matrix3d::Identity()).norm(), 1e-9 * variance_m2);
     double least_m2 = variance_m2;
@@ -95,6 +95,14 @@ TEST_P(EveryPredictor, IsAsSureAsTheSightingAtItsTimeAndNoSurerLater) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Registered, EveryPredictor, ::testing::ValuesIn(PredictorNames()));
+
+// It may have any speed: who asks, a second later, is told so.
+TEST_P(EveryPredictor, IsNotSureThatWhatWasSeenOnceRests) {
+  if (GetParam() == "stationary") return;  // it takes everything to rest
+  const TrackedObject object = SeenAt({1.0}, [](double) { return Eigen::Vector3d(1, 2, 3); });
+  const Eigen::Matrix3d later = predictor_->Predict(object).covariance_m2(EpisodeTime(2));
+  for (int axis = 0; axis < 3; ++axis) EXPECT_GT(std::sqrt(later(axis, axis)), 1);
+}
 
 TEST(TwoFramePredictor, IsExactForConstantVelocity) {
   const auto line = [](double t_s) { return Eigen::Vector3d(0.4 + t_s, 2 - 1.4 * t_s, 0.6); };

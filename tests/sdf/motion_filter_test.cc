@@ -44,7 +44,7 @@ MotionVector Normal(const MotionMatrix& covariance, RandomStream& random) {
 }
 
 MotionVector DrawFirst(const MotionModel& model, RandomStream& random) {
-  MotionFilter prior(model, {EpisodeTime(0), Eigen::Vector3d::Zero(), kSigma_m});
+  MotionFilter prior(model, {EpisodeTime(0), Eigen::Vector3d::Zero(), Isotropic(kSigma_m)});
   MotionVector x = Normal(prior.estimate().P, random);
   x.head<3>().setZero();
   // What the model forgets does not move it.
@@ -58,7 +58,7 @@ MotionVector Step(const MotionModel& model, const MotionVector& x, double dt_s,
 
 Sighting See(double t_s, const MotionVector& x, RandomStream& random) {
   const Eigen::Vector3d noise{random.Normal(), random.Normal(), random.Normal()};
-  return {EpisodeTime(t_s), x.head<3>() + kSigma_m * noise, kSigma_m};
+  return {EpisodeTime(t_s), x.head<3>() + kSigma_m * noise, Isotropic(kSigma_m)};
 }
 
 double Squared(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
@@ -164,7 +164,8 @@ double VoxelError(const std::string& predictor, double ahead_s,
       const Eigen::Vector3d p = path(n / kRate_hz) + Eigen::Vector3d::Constant(0.004 * phase);
       Eigen::Vector3d seen;
       for (int i = 0; i < 3; ++i) seen(i) = VoxelCentroid(p(i), size_m(i), kCell_m);
-      object.history.push_back({EpisodeTime(n / kRate_hz), seen, kCell_m / std::sqrt(12.0)});
+      object.history.push_back(
+          {EpisodeTime(n / kRate_hz), seen, Isotropic(kCell_m / std::sqrt(12.0))});
       if (n < 9) continue;
       const Eigen::Vector3d then =
           path(n / kRate_hz + ahead_s) + Eigen::Vector3d::Constant(0.004 * phase);

@@ -18,7 +18,7 @@ ObjectObservation Seen(const std::string& id, double t_s, const Pose& X_WO) {
 }
 
 TEST(NamedObjects, AreFollowedByNameWhateverTheirOrder) {
-  NamedObjects objects(0.05, 0.2);
+  NamedObjects objects({.cell_m = 0.05, .max_distance_m = 0.2});
   objects.Update(
       {Seen("a", 0, Pose::Translation({0, 0, 0})), Seen("b", 0, Pose::Translation({1, 0, 0}))},
       EpisodeTime(0));
@@ -36,7 +36,7 @@ TEST(NamedObjects, AreFollowedByNameWhateverTheirOrder) {
 }
 
 TEST(NamedObjects, AreForgottenASecondAfterTheirLastSightAndKeepTheirId) {
-  NamedObjects objects(0.05, 0.2);
+  NamedObjects objects({.cell_m = 0.05, .max_distance_m = 0.2});
   objects.Update({Seen("a", 0, Pose())}, EpisodeTime(0));
   objects.Update({Seen("b", 0.9, Pose())}, EpisodeTime(0.9));
   EXPECT_EQ(objects.Objects().size(), 2u);
@@ -48,7 +48,7 @@ TEST(NamedObjects, AreForgottenASecondAfterTheirLastSightAndKeepTheirId) {
 
 TEST(NamedObjects, ThatWereSeenLastWithinWhatIsKeptAreNotForgotten) {
   const GridSpec room{Eigen::Vector3d::Constant(-0.95), 0.1, {20, 20, 20}};  // -1 to 1 m
-  NamedObjects objects(0.05, 0.2, room);
+  NamedObjects objects({.cell_m = 0.05, .max_distance_m = 0.2, .keep_within = room});
   objects.Update({Seen("inside", 0, Pose::Translation({0.99, 0, 0})),
                   Seen("outside", 0, Pose::Translation({1.01, 0, 0}))},
                  EpisodeTime(0));

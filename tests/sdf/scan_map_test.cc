@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "sidestep/sdf/map/cells_on_line.h"
 #include "tests/support/random_points.h"
 
 namespace sidestep::sdf {
@@ -33,6 +34,24 @@ Scan Surface(const std::vector<Eigen::Vector3d>& hits,
   return scan;
 }
 
+// The cells on a line, the one that holds its end left out.
+std::vector<std::size_t> CellsOnTheWay(const Eigen::Vector3d& start, const Eigen::Vector3d& end) {
+  std::vector<std::size_t> cells;
+  double left = 0;
+  VisitCellsOnLine(kGrid, start, end, [&](std::size_t cell, double enter, double leave) {
+    if (cell == CellAt(end)) return false;
+    EXPECT_TRUE(cells.empty() || enter == left) << "a gap";
+    EXPECT_LE(enter, leave);
+    left = leave;
+    cells.push_back(cell);
+    return true;
+  });
+  return cells;
+}
+
+// A map that takes each scan at its word.
+ScanMap MapOf(UnseenSpace unseen) { return ScanMap(kGrid, {}, {{"", {unseen, 0}}}); }
+
 bool Filled(const OccupancyGrid& grid, const Eigen::Vector3d& p_W) {
   return grid.cells[CellAt(p_W)] != 0;
 }
@@ -42,8 +61,7 @@ TEST(CellsOnTheWay, AreThoseThatManySamplesOfTheLineFallInto) {
   for (int run = 0; run < 500; ++run) {
     const Eigen::Vector3d start = UniformPoint(random, 1.5);
     const Eigen::Vector3d end = UniformPoint(random, 1.5);
-    std::vector<std::size_t> cells;
-    VisitCellsOnTheWay(kGrid, start, end, &cells);
+    const std::vector<std::size_t> cells = CellsOnTheWay(start, end);
     std::vector<std::size_t> sampled;
     constexpr int kSamples = 3000;
     for (int n = 0; n <= kSamples; ++n) {
@@ -67,8 +85,7 @@ TEST(CellsOnTheWay, AreThoseThatManySamplesOfTheLineFallInto) {
 }
 
 TEST(CellsOnTheWay, OfALineAlongAnAxisAreARow) {
-  std::vector<std::size_t> cells;
-  VisitCellsOnTheWay(kGrid, {0.05, 0.05, 0.05}, {0.55, 0.05, 0.05}, &cells);
+  const std::vector<std::size_t> cells = CellsOnTheWay({0.05, 0.05, 0.05}, {0.55, 0.05, 0.05});
   ASSERT_EQ(cells.size(), 5u);
   for (std::size_t n = 0; n < 5; ++n) {
     EXPECT_EQ(cells[n], CellAt({0.05 + 0.1 * static_cast<double>(n), 0.05, 0.05}));
@@ -76,10 +93,8 @@ TEST(CellsOnTheWay, OfALineAlongAnAxisAreARow) {
 }
 
 TEST(CellsOnTheWay, AreNoneForALineBesideTheGrid) {
-  std::vector<std::size_t> cells;
-  VisitCellsOnTheWay(kGrid, {-2, 3, 0}, {2, 3, 0}, &cells);
-  VisitCellsOnTheWay(kGrid, {0.3, 0.3, 0.3}, {0.3, 0.3, 0.3}, &cells);
-  EXPECT_TRUE(cells.empty());
+  EXPECT_TRUE(CellsOnTheWay({-2, 3, 0}, {2, 3, 0}).empty());
+  EXPECT_TRUE(CellsOnTheWay({0.3, 0.3, 0.3}, {0.3, 0.3, 0.3}).empty());
 }
 
 const Eigen::Vector3d kHit(0.55, 0.05, 0.05), kBefore(0.35, 0.03, 0.03), kBehind(0.85, 0.05, 0.05);
@@ -91,7 +106,7 @@ TEST(ScanMap, FillsTheSurfaceAndTreatsWhatIsBehindAsConfigured) {
   } cases[] = {
       {UnseenSpace::kFree, false}, {UnseenSpace::kFilled, true}, {UnseenSpace::kRemembered, false}};
   for (const auto& [unseen, behind] : cases) {
-    ScanMap map(kGrid, unseen);
+    ScanMap map = MapOf(unseen);
     const OccupancyGrid grid = map.Update(Surface({kHit}, {}));
     EXPECT_TRUE(Filled(grid, kHit)) << ToString(unseen);
     EXPECT_FALSE(Filled(grid, kBefore)) << ToString(unseen);
@@ -100,14 +115,14 @@ TEST(ScanMap, FillsTheSurfaceAndTreatsWhatIsBehindAsConfigured) {
 }
 
 TEST(ScanMap, SeesThatASpaceIsFreeWhereARayMeetsNothing) {
-  ScanMap map(kGrid, UnseenSpace::kFilled);
+  ScanMap map = MapOf(UnseenSpace::kFilled);
   const OccupancyGrid grid = map.Update(Surface({}, {{3, 0.17, 0.17}}));
   EXPECT_FALSE(Filled(grid, {0.85, 0.05, 0.05}));
   EXPECT_TRUE(Filled(grid, {0.85, 0.45, 0.05}));
 }
 
 TEST(ScanMap, RemembersWhatItDoesNotSeeUntilItLooksAgain) {
-  ScanMap remembering(kGrid, UnseenSpace::kRemembered), forgetting(kGrid, UnseenSpace::kFree);
+  ScanMap remembering = MapOf(UnseenSpace::kRemembered), forgetting = MapOf(UnseenSpace::kFree);
   for (ScanMap* const map : {&remembering, &forgetting}) {
     map->Update(Surface({kHit}, {}, 0));
     const OccupancyGrid elsewhere = map->Update(Surface({{-0.55, 0.05, 0.05}}, {}, 1));
@@ -118,23 +133,69 @@ TEST(ScanMap, RemembersWhatItDoesNotSeeUntilItLooksAgain) {
 }
 
 TEST(ScanMap, KeepsASurfaceThatAnotherRayOfTheSameScanPasses) {
-  ScanMap map(kGrid, UnseenSpace::kFree);
+  ScanMap map = MapOf(UnseenSpace::kFree);
   const OccupancyGrid grid = map.Update(Surface({kHit}, {kBehind}));
   EXPECT_TRUE(Filled(grid, kHit));
 }
 
 TEST(ScanMap, TakesAScanOfSolidsForTheWholeTruth) {
-  ScanMap map(kGrid, UnseenSpace::kFilled);
+  ScanMap map = MapOf(UnseenSpace::kFilled);
   Scan scan = Surface({kHit}, {});
   scan.kind = ScanKind::kSolid;
   EXPECT_EQ(map.Update(scan).CountFilled(), 1u);
 }
 
 TEST(ScanMap, LeavesOutRaysThatAreNotFinite) {
-  ScanMap map(kGrid, UnseenSpace::kFilled);
+  ScanMap map = MapOf(UnseenSpace::kFilled);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const OccupancyGrid grid = map.Update(Surface({{nan, 0, 1}}, {{0, nan, 1}}));
   EXPECT_EQ(grid.CountFilled(), kGrid.num_cells());
+}
+
+// Named, and from where its camera stands.
+Scan From(const std::string& sensor, const Eigen::Vector3d& p_WC,
+          const std::vector<Eigen::Vector3d>& hits_W, const std::vector<Eigen::Vector3d>& ends_W,
+          double t_s) {
+  Scan scan = Surface(hits_W, ends_W, t_s);
+  scan.sensor = sensor;
+  scan.X_WC = Pose::Translation(p_WC);
+  scan.p_CP.colwise() -= p_WC;
+  scan.p_CFree.colwise() -= p_WC;
+  return scan;
+}
+
+TEST(ScanMap, KeepsWhatOneSensorSeesAndAnotherDoesNot) {
+  for (const UnseenSpace unseen : {UnseenSpace::kFree, UnseenSpace::kRemembered}) {
+    ScanMap map(kGrid, {}, {{"left", {unseen, 0}}, {"right", {unseen, 0}}});
+    const Eigen::Vector3d right(0.05, -0.9, 0.05);
+    map.Update(From("left", {0, 0, 0}, {kHit}, {}, 0));
+    // The other one looks elsewhere, then past it, then the first one sees that it is gone.
+    EXPECT_TRUE(Filled(map.Update(From("right", right, {}, {{-0.8, -0.8, 0.05}}, 0)), kHit));
+    EXPECT_TRUE(Filled(map.Update(From("right", right, {}, {{1.05, 0.95, 0.05}}, 0.03)), kHit));
+    EXPECT_FALSE(Filled(map.Update(From("left", {0, 0, 0}, {}, {kBehind}, 0.03)), kHit));
+  }
+}
+
+TEST(ScanMap, LetsASensorFreeWhatAnotherSawThereBefore) {
+  ScanMap map(kGrid, {}, {});
+  map.Update(From("left", {0, 0, 0}, {kHit}, {}, 0));
+  map.Update(From("left", {0, 0, 0}, {{-0.55, 0.05, 0.05}}, {}, 0.1));  // it is hidden now
+  const Eigen::Vector3d right(0.55, -0.9, 0.05);
+  EXPECT_FALSE(Filled(map.Update(From("right", right, {}, {{0.55, 0.9, 0.05}}, 0.1)), kHit));
+}
+
+TEST(ScanMap, AddsWhatSensorsOfSolidsTellToWhatCamerasSee) {
+  ScanMap map(kGrid, {}, {});
+  Scan solid = Surface({kBehind}, {});
+  solid.kind = ScanKind::kSolid;
+  solid.sensor = "tags";
+  map.Update(solid);
+  const OccupancyGrid both = map.Update(From("camera", {0, 0, 0}, {kHit}, {}, 0));
+  EXPECT_TRUE(Filled(both, kHit));
+  EXPECT_TRUE(Filled(both, kBehind));
+  EXPECT_EQ(both.CountFilled(), 2u);
+  solid.p_CP.resize(3, 0);
+  EXPECT_EQ(map.Update(solid).CountFilled(), 1u) << "what it told before is gone";
 }
 
 TEST(UnseenSpace, HasAWordForEachKind) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "sidestep/sdf/world_model.h"
@@ -21,7 +22,7 @@ class MovingBallWorld final : public sdf::WorldModel {
     radius_m_ = radius_m;
   }
 
-  void Observe(const Scan&) override {}
+  void Observe(std::span<const Scan>) override {}
   const OccupancyGrid& Occupancy() const override { return nothing_; }
   std::shared_ptr<const sdf::DistanceField> MakeField() override { return field_; }
   std::vector<PredictedObject> DescribeObjects(

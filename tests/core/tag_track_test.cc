@@ -1,4 +1,4 @@
-#include "sidestep/hardware/tag_track.h"
+#include "sidestep/core/tag_track.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "sidestep/core/random.h"
 
-namespace sidestep::hardware {
+namespace sidestep {
 namespace {
 
 constexpr double kPeriod_s = 1.0 / 30;
@@ -147,6 +147,46 @@ TEST(TagTrack, IsLostAfterThreeTenthsOfASecondWithoutSighting) {
   EXPECT_FALSE(track.Update(Time(20), {0, 0, 0}, kR_m2).is_taken) << "it must be found anew";
 }
 
+TEST(TagTrack, ThatHoldsOnIsLostOnlyToWhatAgrees) {
+  RandomStream random(4, "mistakes");
+  TagTrack track({.holds_on = true});
+  for (int k = 0; k < 10; ++k) track.Update(Time(k), {0, 0, 0}, kR_m2);
+  for (int k = 10; k < 16; ++k) {
+    EXPECT_FALSE(track.Update(Time(k), 2 * Normal3(random), kR_m2).is_taken) << "anywhere";
+    EXPECT_TRUE(track.is_followed());
+  }
+  TagTrack::Verdict verdict;
+  int k = 16;
+  for (; !verdict.is_taken; ++k) verdict = track.Update(Time(k), {0.5, 0, 0}, kR_m2);
+  EXPECT_EQ(k, 16 + 3) << "three agree";
+  EXPECT_EQ(verdict.num_begun_with, 3);
+  EXPECT_EQ(track.num_losses(), 1);
+}
+
+TEST(TagTrack, RefusesWhatIsTurnedAsNothingTurns) {
+  TagTrack track({.most_turn_rad_s = 6});
+  const auto turned = [](double rad) {
+    return SeenTurn{Eigen::Quaterniond(Eigen::AngleAxisd(rad, Eigen::Vector3d::UnitX())), 0.01};
+  };
+  for (int k = 0; k < 10; ++k) track.Update(Time(k), {0, 0, 0}, kR_m2, turned(0.19 * k));
+  EXPECT_TRUE(track.is_followed()) << "5.7 rad/s";
+  EXPECT_FALSE(track.Update(Time(10), {0, 0, 0}, kR_m2, turned(0.19 * 9 + 0.3)).is_taken);
+  EXPECT_TRUE(track.Update(Time(11), {0, 0, 0}, kR_m2, turned(0.19 * 11)).is_taken);
+  EXPECT_TRUE(track.Update(Time(12), {0, 0, 0}, kR_m2).is_taken) << "nobody says how it is turned";
+}
+
+TEST(TagTrack, TellsHowFarASightingIsFromWhatIsExpected) {
+  TagTrack track;
+  EXPECT_TRUE(std::isinf(track.DistanceOf(Time(0), {0, 0, 0}, kR_m2)));
+  track.Update(Time(0), {0, 0, 0}, kR_m2);
+  EXPECT_LT(track.DistanceOf(Time(1), {0, 0, 0}, kR_m2), 1e-9) << "of what may become a track";
+  for (int k = 1; k < 10; ++k) track.Update(Time(k), {0, 0, 0}, kR_m2);
+  const Eigen::Vector3d seen(0.01, 0.005, 0);
+  const double distance = track.DistanceOf(Time(10), seen, kR_m2);
+  EXPECT_GT(distance, 0);
+  EXPECT_EQ(track.Update(Time(10), seen, kR_m2).nis, distance);
+}
+
 TEST(TagTrack, RefusesWhatIsFasterThanAnythingThere) {
   TagTrack track({.sigma_v_m_s = 100});
   const auto at = [](int k) { return Eigen::Vector3d(3.0 * k * kPeriod_s, 0, 0); };
@@ -154,4 +194,4 @@ TEST(TagTrack, RefusesWhatIsFasterThanAnythingThere) {
 }
 
 }  // namespace
-}  // namespace sidestep::hardware
+}  // namespace sidestep
