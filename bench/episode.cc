@@ -458,6 +458,12 @@ class Loop {
 
 namespace {
 
+// Whether a tag may be said to be where it is not. What is only noisy needs no gates, and they cost
+// time where something stops dead.
+bool MayMisbehave(const scenarios::TagSettings& tags) {
+  return std::max({tags.partly_hidden, tags.flips, tags.outliers, tags.swaps, tags.phantoms}) > 0;
+}
+
 // Of what is known by its shape, and not by cells that the workspace bounds.
 void CheckFieldSizes(const scenarios::Scenario& scenario, const sdf::WorldModelOptions& options) {
   const bool by_truth = options.knowledge == sdf::Knowledge::kFullKnowledge;
@@ -488,7 +494,7 @@ sdf::WorldModelOptions MakeWorldModelOptions(const scenarios::Scenario& scenario
   options.predictor = scenario.predictor;
   options.coast = HorizonOffset(scenario.tracking.coast_s);
   options.max_speed_m_s = scenario.tracking.max_speed_m_s;
-  options.gates_named_objects = scenario.sensor.tags.has_value();
+  options.gates_named_objects = scenario.sensor.tags && MayMisbehave(*scenario.sensor.tags);
   options.growth_sigmas = scenario.growth_sigmas;
   options.growth_limit_m = scenario.growth_limit_m;
   if (scenario.safety.profile == scenarios::SafetyProfile::kLab) {
