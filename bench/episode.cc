@@ -492,6 +492,17 @@ sdf::EvidenceOptions EvidenceOf(const scenarios::EvidenceSettings& settings) {
   return options;
 }
 
+// Whether a tag may be said to be where it is not. What is only noisy needs no gates, and they cost
+// time where something stops dead.
+bool TagsMayMisbehave(const scenarios::Scenario& scenario) {
+  const std::vector<scenarios::SensorSettings> sensors = scenarios::SensorsOf(scenario);
+  return std::any_of(sensors.begin(), sensors.end(), [](const auto& sensor) {
+    if (!sensor.tags) return false;
+    const scenarios::TagSettings& tags = *sensor.tags;
+    return std::max({tags.partly_hidden, tags.flips, tags.outliers, tags.swaps, tags.phantoms}) > 0;
+  });
+}
+
 // Of what is known by its shape, and not by cells that the workspace bounds.
 void CheckFieldSizes(const scenarios::Scenario& scenario, const sdf::WorldModelOptions& options) {
   const bool by_truth = options.knowledge == sdf::Knowledge::kFullKnowledge;
@@ -521,7 +532,7 @@ sdf::WorldModelOptions MakeWorldModelOptions(const scenarios::Scenario& scenario
   options.predictor = scenario.predictor;
   options.coast = HorizonOffset(scenario.tracking.coast_s);
   options.max_speed_m_s = scenario.tracking.max_speed_m_s;
-  options.gates_named_objects = scenario.sensor.tags.has_value();
+  options.gates_named_objects = TagsMayMisbehave(scenario);
   options.growth_sigmas = scenario.growth_sigmas;
   options.growth_limit_m = scenario.growth_limit_m;
   if (scenario.safety.profile == scenarios::SafetyProfile::kLab) {

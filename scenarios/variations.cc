@@ -1,5 +1,7 @@
 #include "sidestep/scenarios/variations.h"
 
+#include <algorithm>
+#include <iterator>
 #include <memory>
 #include <utility>
 #include <variant>
@@ -93,8 +95,16 @@ void AddChangedNoise(const SensorSettings& sensor, std::vector<std::string>& cha
                       sensor.camera->flying_pixels > 0);
   }
   if (sensor.tags) {
-    add("tags", sensor.tags->across_noise > 0 || sensor.tags->along_noise_per_m > 0 ||
-                    sensor.tags->rotation_noise_rad > 0);
+    const TagSettings& tags = *sensor.tags;
+    const double chances[] = {tags.across_noise,
+                              tags.along_noise_per_m,
+                              tags.rotation_noise_rad,
+                              tags.partly_hidden,
+                              tags.flips,
+                              tags.outliers,
+                              tags.swaps,
+                              tags.phantoms};
+    add("tags", *std::max_element(std::begin(chances), std::end(chances)) > 0);
   }
   if (sensor.tag_images) add("tag_images", sensor.tag_images->grey_noise > 0);
 }

@@ -44,10 +44,27 @@ double SmallerToLarger(std::size_t a, std::size_t b) {
   return static_cast<double>(std::min(a, b)) / static_cast<double>(std::max(a, b));
 }
 
-// How far a point is outside a box, along the axis where it is farthest; negative: inside.
-double OutsideBox(const Eigen::Vector3d& p, const Eigen::Vector3d& center,
-                  const Eigen::Vector3d& half_extents) {
-  return ((p - center).cwiseAbs() - half_extents).maxCoeff();
+struct PlacedBox {
+  Eigen::Vector3d center, half_extents;
+};
+
+// Cells by the box that each is nearest to, along the axis where it is farthest outside; the first
+// one of equals.
+std::vector<std::vector<std::size_t>> ShareOut(const std::vector<std::size_t>& cells,
+                                               const GridSpec& grid,
+                                               const std::vector<PlacedBox>& boxes) {
+  std::vector<std::vector<std::size_t>> shares(boxes.size());
+  for (const std::size_t cell : cells) {
+    const Eigen::Vector3d p = grid.CenterOf(cell);
+    const auto outside_m = [&](const PlacedBox& box) {
+      return ((p - box.center).cwiseAbs() - box.half_extents).maxCoeff();
+    };
+    const auto nearest = std::min_element(
+        boxes.begin(), boxes.end(),
+        [&](const PlacedBox& a, const PlacedBox& b) { return outside_m(a) < outside_m(b); });
+    shares[static_cast<std::size_t>(nearest - boxes.begin())].push_back(cell);
+  }
+  return shares;
 }
 
 // The corners of the box around a component, faces included [m].
@@ -230,62 +247,53 @@ bool ObjectTracker::IsMemory(const Component& component, const std::vector<CellB
   return id > 0 && tracks_.at(id).state == State::kMoving;
 }
 
-std::vector<ObjectTracker::View> ObjectTracker::TellApart(std::vector<View> views, EpisodeTime t) {
-  struct Mover {
-    Track* track;
-    Eigen::Vector3d p_WBox;
-  };
-  std::vector<Mover> movers;
+std::vector<ObjectTracker::Track*> ObjectTracker::ThingsIn(const Component& piece, EpisodeTime t) {
+  std::vector<Track*> things;
+  std::size_t num_of_all = 0;
+  const Eigen::Vector3d low = LowCorner(piece, grid_), high = HighCorner(piece, grid_);
   for (auto& [id, track] : tracks_) {
-    if (track.state != State::kMoving || track.coasting) continue;
-    movers.push_back({&track, Expect(track, t).p_WO + track.object.box_center_O});
+    if (track.state != State::kMoving || track.coasting || track.missed_scans == 0) continue;
+    const Eigen::Vector3d p_WO = Expect(track, t).p_WO, p_WBox = p_WO + track.object.box_center_O;
+    if ((p_WBox.array() < low.array()).any() || (p_WBox.array() > high.array()).any()) continue;
+    std::size_t num_cells = 0, num_filled = 0;
+    VisitShape(track, p_WO, [&](std::size_t cell) {
+      ++num_cells;
+      num_filled += std::binary_search(piece.cells.begin(), piece.cells.end(), cell) ? 1 : 0;
+    });
+    if (static_cast<double>(num_filled) < kLeastShare * static_cast<double>(num_cells)) continue;
+    things.push_back(&track);
+    num_of_all += num_cells;
   }
-  if (movers.size() < 2) return views;
+  const bool holds_all =
+      static_cast<double>(piece.cells.size()) >= kLeastOfAll * static_cast<double>(num_of_all);
+  return holds_all ? things : std::vector<Track*>();
+}
+
+std::vector<ObjectTracker::View> ObjectTracker::TellApart(std::vector<View> views, EpisodeTime t) {
+  const auto moves = [](const auto& entry) { return entry.second.state == State::kMoving; };
+  if (std::count_if(tracks_.begin(), tracks_.end(), moves) < 2) return views;
   std::vector<View> apart;
   for (View& view : views) {
-    const std::vector<std::size_t>& cells = view.cells.cells;
-    std::vector<Mover> inside;
-    std::size_t num_of_all = 0;
-    for (const Mover& mover : movers) {
-      const Eigen::Vector3d low = LowCorner(view.cells, grid_),
-                            high = HighCorner(view.cells, grid_);
-      if ((mover.p_WBox.array() < low.array()).any() || (mover.p_WBox.array() > high.array()).any())
-        continue;
-      std::size_t num_cells = 0, num_filled = 0;
-      const Eigen::Vector3d p_WO = mover.p_WBox - mover.track->object.box_center_O;
-      VisitShape(*mover.track, p_WO, [&](std::size_t cell) {
-        ++num_cells;
-        num_filled += std::binary_search(cells.begin(), cells.end(), cell) ? 1 : 0;
-      });
-      if (static_cast<double>(num_filled) < kLeastShare * static_cast<double>(num_cells)) continue;
-      inside.push_back(mover);
-      num_of_all += num_cells;
-    }
-    if (inside.size() < 2 ||
-        static_cast<double>(cells.size()) < kLeastOfAll * static_cast<double>(num_of_all)) {
+    const std::vector<Track*> things = ThingsIn(view.cells, t);
+    if (things.size() < 2) {
       apart.push_back(std::move(view));
       continue;
     }
-    std::vector<std::vector<std::size_t>> cells_of(inside.size());
-    for (const std::size_t cell : cells) {
-      const Eigen::Vector3d p_W = grid_.CenterOf(cell);
-      const auto outside_m = [&](const Mover& mover) {
-        return OutsideBox(p_W, mover.p_WBox, mover.track->object.box_half_extents_m);
-      };
-      const auto nearest = std::min_element(
-          inside.begin(), inside.end(),
-          [&](const Mover& a, const Mover& b) { return outside_m(a) < outside_m(b); });
-      cells_of[static_cast<std::size_t>(nearest - inside.begin())].push_back(cell);
+    std::vector<PlacedBox> boxes;
+    for (const Track* const thing : things) {
+      boxes.push_back(
+          {Expect(*thing, t).p_WO + thing->object.box_center_O, thing->object.box_half_extents_m});
     }
-    for (std::size_t n = 0; n < inside.size(); ++n) {
-      if (cells_of[n].empty()) continue;
+    std::vector<std::vector<std::size_t>> shares = ShareOut(view.cells.cells, grid_, boxes);
+    for (std::size_t n = 0; n < things.size(); ++n) {
+      if (shares[n].empty()) continue;
       View& part = apart.emplace_back();
-      part.cells = MakeComponent(std::move(cells_of[n]), grid_);
-      part.owner = inside[n].track;
+      part.cells = MakeComponent(std::move(shares[n]), grid_);
+      part.owner = things[n];
       part.owner->missed_scans = 0;
       part.is_part = true;
       if (n > 0 && !std::exchange(part.owner->is_merged, true)) {
-        Note(track_event::kMerged, *part.owner, t, inside[0].track->object.id);
+        Note(track_event::kMerged, *part.owner, t, things[0]->object.id);
       }
     }
   }

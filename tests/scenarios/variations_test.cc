@@ -168,6 +168,12 @@ TEST(WhatTheSeedChanges, NamesEverythingThatIsRandom) {
                                               {"sensor.noise", "{false_free: 0.1}"}});
   EXPECT_THAT(WhatTheSeedChanges(noisy),
               ElementsAre("sensor.jitter_s", "sensor.dropout", "sensor.noise"));
+  for (const char* const fault : {"partly_hidden", "flips", "outliers", "swaps", "phantoms"}) {
+    const Scenario by_tags = Load(
+        "walkway_tags",
+        {{"tags", "exact"}, {"variations", "{}"}, {"sensor.tags." + std::string(fault), "0.1"}});
+    EXPECT_THAT(WhatTheSeedChanges(by_tags), ElementsAre("sensor.tags")) << fault;
+  }
 }
 
 std::string Complaint(const std::string& variations) {

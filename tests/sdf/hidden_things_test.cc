@@ -15,6 +15,7 @@
 #include "sidestep/core/random.h"
 #include "sidestep/sdf/prediction/registry.h"
 #include "sidestep/sdf/tracking/object_tracker.h"
+#include "sidestep/sdf/world_model.h"
 #include "tests/sdf/box_scene.h"
 #include "tests/sdf/cell_camera.h"
 
@@ -180,6 +181,58 @@ TEST(AThingThatNobodyHasSeen, IsKnownToMoveSoonAfterItComesOutAndNotTakenForFurn
       }
     });
     EXPECT_LT(t_moves_s - t_seen_s, 0.1 + 0.06 / speed_m_s);
+  }
+}
+
+// The scan of such a camera: a point in each filled cell that it sees, and rays that pass through
+// each free one.
+Scan ScanOf(const CellCamera& camera, EpisodeTime t) {
+  Scan scan;
+  scan.t = t;
+  scan.kind = ScanKind::kSurface;
+  scan.X_WC = Pose::Translation(kCamera);
+  std::vector<Eigen::Vector3d> points, free;
+  for (std::size_t cell = 0; cell < camera.seen().size(); ++cell) {
+    if (camera.seen()[cell] == 0) continue;
+    const Eigen::Vector3d p_CP = RoomGrid().CenterOf(cell) - kCamera;
+    if (camera.map().cells[cell] != 0) {
+      points.push_back(p_CP);
+    } else {
+      free.push_back(p_CP + RoomGrid().cell_m * p_CP.normalized());
+    }
+  }
+  const auto in_columns = [](const std::vector<Eigen::Vector3d>& list) {
+    Eigen::Matrix3Xd columns(3, static_cast<Eigen::Index>(list.size()));
+    for (Eigen::Index n = 0; n < columns.cols(); ++n) {
+      columns.col(n) = list[static_cast<std::size_t>(n)];
+    }
+    return columns;
+  };
+  scan.p_CP = in_columns(points);
+  scan.p_CFree = in_columns(free);
+  return scan;
+}
+
+TEST(WorldModel, FollowsWhatACameraLosesBehindAScreenForAsLongAsItMayCoast) {
+  const SceneBox box = MovingBox(kBox, kBehind, {1, 0, 0});
+  for (const double coast_s : {0.1, 1.0}) {
+    WorldModelOptions options;
+    options.grid = RoomGrid();
+    options.max_distance_m = 0.3;
+    options.coast = HorizonOffset(coast_s);
+    const auto world = MakeWorldModel(options);
+    CellCamera camera(RoomGrid(), kCamera);
+    EpisodeTime t;
+    for (int frame = 0; frame <= 24; ++frame) {  // it was seen last at 0.5 s
+      t = EpisodeTime(frame / kRate_hz);
+      camera.Look(Rasterise({Screen(), box}, RoomGrid(), t));
+      world->Observe(ScanOf(camera, t));
+    }
+    world->MakeField();
+    const std::vector<PredictedObject> objects = world->DescribeObjects({t});
+    ASSERT_EQ(objects.size(), coast_s > 0.5 ? 1u : 0u);
+    if (objects.empty()) continue;
+    EXPECT_NEAR(objects[0].X_WO[0].translation().x(), box.p_WO(t).x(), 0.1);
   }
 }
 
