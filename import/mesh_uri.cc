@@ -51,7 +51,9 @@ std::vector<fs::path> PackagesOf(const std::string& name, const std::string& urd
     if (NameOf(folder) == name) packages.push_back(folder);
   };
   for (const std::string& folder : package_paths) consider(fs::absolute(folder));
-  fs::path folder = fs::weakly_canonical(urdf_path).parent_path();
+  std::error_code error;  // a pipe, as of a shell's <(xacro FILE), has a name but no place
+  fs::path folder = fs::weakly_canonical(urdf_path, error).parent_path();
+  if (error) folder = fs::absolute(urdf_path).parent_path();
   while (true) {
     consider(folder);
     if (folder == folder.parent_path()) return packages;

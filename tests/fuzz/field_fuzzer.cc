@@ -151,7 +151,7 @@ void CheckTransform(Input& input) {
   static sdf::FastDistanceTransform
       transform;  // Its memory serves all grids, whatever came before.
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    const OnlyTarget only(target);
+    const sdf::OnlyTarget only(target);
     std::vector<float> actual(grid.cells.size(), std::nanf(""));
     transform.Compute(grid, options, actual);
     Require(AreSame(actual, expected), hwy::TargetName(target));
@@ -171,8 +171,9 @@ void CheckEnvelope(Input& input) {
       expected[t] = std::min(expected[t], values[s] + cost(std::max(s, t) - std::min(s, t)));
     }
   }
-  std::vector<fast_transform::EnvelopePiece> pieces(values.size());
-  fast_transform::TransformLineByEnvelope(values.data(), values.size(), far, cost, pieces.data());
+  std::vector<sdf::fast_transform::EnvelopePiece> pieces(values.size());
+  sdf::fast_transform::TransformLineByEnvelope(values.data(), values.size(), far, cost,
+                                               pieces.data());
   Require(values == expected, "the lower envelope differs from the minimum over all sources");
 }
 
@@ -258,7 +259,7 @@ void CheckQueries(Input& input) {
   const sdf::CompositeField field(scene.static_W, scene.objects, scene.clamp_m, exact);
   const sdf::PlacedComposite placed = field.PlacedAt(t);
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    const OnlyTarget only(target);
+    const sdf::OnlyTarget only(target);
     sdf::DistanceSamples batch;
     field.SampleMany(p_WQ, t, batch);
     sdf::SampleColumns columns;

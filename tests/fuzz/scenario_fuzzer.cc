@@ -8,10 +8,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   const std::string text(reinterpret_cast<const char*>(bytes), size);
   std::string written;
   try {
-    written = sidestep::ToYaml(sidestep::ParseScenario(text, "fuzz.yaml"));
+    written = sidestep::scenarios::ToYaml(sidestep::scenarios::ParseScenario(text, "fuzz.yaml"));
   } catch (const sidestep::InputError&) {
     return 0;
   }
-  sidestep::ParseScenario(written, "written.yaml");  // Not caught: must be accepted.
+  sidestep::scenarios::ParseScenario(written, "written.yaml");  // Not caught: must be accepted.
   return 0;
 }

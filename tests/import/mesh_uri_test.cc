@@ -2,9 +2,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
+#include <string>
 
 #include "sidestep/core/input_error.h"
 #include "tests/support/temporary_folder.h"
@@ -53,6 +55,19 @@ TEST_F(MeshUri, OfAPackageIsFoundAboveTheUrdfOrWhereItIsSaidToBe) {
   EXPECT_EQ(Found("package://hand_parts/b.stl", {other}), "other/hand_parts/b.stl");
   EXPECT_EQ(Found("package://hand_parts/b.stl", {other + "/hand_parts/"}),
             "other/hand_parts/b.stl");
+}
+
+// As of a shell's <(xacro FILE).
+TEST_F(MeshUri, OfAUrdfThatComesThroughAPipeIsFoundWhereItIsSaidToBe) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  const std::string urdf = "/proc/self/fd/" + std::to_string(ends[0]);
+  const std::string other = (root_ / "other").string();
+  EXPECT_EQ(ResolveMeshUri("package://hand_parts/b.stl", urdf, {other}),
+            other + "/hand_parts/b.stl");
+  EXPECT_THROW(ResolveMeshUri("package://hand_parts/b.stl", urdf, {}), InputError);
+  close(ends[0]);
+  close(ends[1]);
 }
 
 TEST_F(MeshUri, ThatLeadsNowhereSaysWhy) {
