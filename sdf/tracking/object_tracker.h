@@ -169,6 +169,8 @@ class ObjectTracker {
   std::vector<View> Look(std::vector<Component> components) const;
   // Whether it is but what is remembered of a moving thing, which may be anywhere by now.
   bool IsMemory(const Component& component, const std::vector<CellBox>& latest) const;
+  // Whether it is but a small part of a moving thing, of which surfaces are seen.
+  bool IsCrumb(const Component& component, const std::vector<CellBox>& latest) const;
   // Takes pieces in which several moving things should be apart, each part with its owner.
   std::vector<View> TellApart(std::vector<View> views, EpisodeTime t);
   // Gives views their owners: the tracks that they belong to.
