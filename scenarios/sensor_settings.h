@@ -48,7 +48,7 @@ struct CameraSettings {
 struct EvidenceSettings {
   bool single_frames = false;  ///< each image is taken at its word, and the rest does not count
   double hit = 0.7, miss = 1.4, least = -2.8, most = 2.8;  ///< log-odds
-  int settle_scans = 10;
+  int settle_scans = 60;
   double decay_per_s = 30;
   double noise_sigmas = 4;
   int least_cells = 6;

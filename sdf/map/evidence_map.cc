@@ -166,7 +166,10 @@ void EvidenceMap::TracePoint(const Eigen::Vector3d& p_WCamera, const Eigen::Vect
                      }
                      return true;
                    });
-  if (attractor != kOutside) {
+  if (end != kOutside && filled_.cells[end] != 0) {
+    marks_[end] |= kHit;
+    if (!Attracts(end)) new_cells_.push_back(end);
+  } else if (attractor != kOutside) {
     marks_[attractor] |= kHit;
   } else if (end != kOutside) {
     marks_[end] |= kHit;
@@ -226,7 +229,8 @@ void EvidenceMap::Overlook(Cell& cell, std::size_t index, const Camera& camera, 
     cell = Cell();
     return;
   }
-  if (IsSettled(cell) || cell.log_odds <= kRounding) return;
+  // What may have been there all the time stays.
+  if (once_free_[index] == 0 || IsSettled(cell) || cell.log_odds <= kRounding) return;
   cell.log_odds = std::max(cell.log_odds - static_cast<float>(decay), 0.0F);
   if (cell.log_odds > kRounding) return;
   filled_.cells[index] = 0;

@@ -14,6 +14,10 @@
 namespace sidestep::sdf {
 namespace {
 
+// Of a surface that moves, noise leaves parts behind and puts others before it; what is smaller
+// than this part of it, and where it was, is one of these.
+constexpr double kCrumb = 0.25;
+
 // By what share of its cells a thing that rests has to shrink to be looked at anew: one layer of a
 // thing 20 cells long. What one sees of surfaces becomes clear only by and by.
 constexpr double kLostShare = 0.05, kLostShareOfSurface = 0.3;
@@ -120,7 +124,7 @@ TrackerTimes ObjectTracker::Update(const OccupancyGrid& occupancy, EpisodeTime t
   const std::vector<CellBox> latest = LatestViews();
   static_occupancy_ = occupancy;
   std::erase_if(components, [&](const Component& component) {
-    if (!IsMemory(component, latest)) return false;
+    if (!IsMemory(component, latest) && !IsCrumb(component, latest)) return false;
     for (const std::size_t cell : component.cells) static_occupancy_.cells[cell] = 0;
     return true;
   });
@@ -245,6 +249,14 @@ bool ObjectTracker::IsMemory(const Component& component, const std::vector<CellB
   }
   const int id = FindWhole(latest, component);
   return id > 0 && tracks_.at(id).state == State::kMoving;
+}
+
+bool ObjectTracker::IsCrumb(const Component& component, const std::vector<CellBox>& latest) const {
+  if (once_free_.empty()) return false;
+  const int id = FindWhole(latest, component);
+  if (id == 0 || tracks_.at(id).state != State::kMoving) return false;
+  return static_cast<double>(component.cells.size()) <
+         kCrumb * static_cast<double>(tracks_.at(id).num_cells);
 }
 
 std::vector<ObjectTracker::Track*> ObjectTracker::ThingsIn(const Component& piece, EpisodeTime t) {

@@ -171,6 +171,8 @@ class ObjectTracker {
   bool IsMemory(const Component& component, const std::vector<CellBox>& latest) const;
   // The moving things that should be in this piece, if it is large enough for all of them.
   std::vector<Track*> ThingsIn(const Component& piece, EpisodeTime t);
+  // Whether it is but a small part of a moving thing, of which surfaces are seen.
+  bool IsCrumb(const Component& component, const std::vector<CellBox>& latest) const;
   // Takes pieces in which several moving things should be apart, each part with its owner.
   std::vector<View> TellApart(std::vector<View> views, EpisodeTime t);
   // Gives views their owners: the tracks that they belong to.

@@ -58,14 +58,19 @@ INSTANTIATE_TEST_SUITE_P(NoisePerM, StillRoom, ::testing::Values("0", "0.002", "
                            return name;
                          });
 
-// The time at which something has come by its own length into the grid.
-double InsideAt(const scenarios::Scenario& scenario) {
-  const scenarios::MovingObstacle& visitor = scenario.moving_obstacles.at(0);
-  const double border_m =
-      scenario.grid.first_center_m.y() + scenario.grid.cell_m * (scenario.grid.size[1] - 0.5);
-  const double depth_m = HalfExtents(visitor.shape).y();
+// When the visitor's middle has come into the picture and into the grid.
+double InViewAt(const scenarios::Scenario& scenario) {
+  const scenarios::CameraSettings& camera = scenario.sensor.camera.value();
+  const Pose X_CW = scenarios::PoseOfCamera(camera.position_m, camera.look_at_m).Inverse();
+  const double across = std::tan(camera.field_of_view_rad / 2);
   for (double t_s = 0;; t_s += 1e-3) {
-    if (PoseAt(visitor, EpisodeTime(t_s)).translation().y() + depth_m < border_m) return t_s;
+    const Eigen::Vector3d p_W =
+        PoseAt(scenario.moving_obstacles.at(0), EpisodeTime(t_s)).translation();
+    const Eigen::Vector3d p_C = X_CW * p_W;
+    const auto [i, j, k] = scenario.grid.CellOf(p_W);
+    const bool in_picture = std::abs(p_C.x()) < across * p_C.z() &&
+                            std::abs(p_C.y()) < across * p_C.z() * camera.height / camera.width;
+    if (in_picture && scenario.grid.Contains(i, j, k)) return t_s;
   }
 }
 
@@ -88,7 +93,7 @@ TEST_P(Visitor, IsSeenToMoveWithinAFifthOfASecond) {
     return event.what == sdf::track_event::kMoved;
   });
   ASSERT_NE(moved, events.end());
-  EXPECT_LT(moved->t.seconds(), InsideAt(episode.scenario) + 0.2);
+  EXPECT_LT(moved->t.seconds(), InViewAt(episode.scenario) + 0.2);
   const Eigen::Vector3d p_W = PoseAt(episode.scenario.moving_obstacles[0], moved->t).translation();
   EXPECT_LT((moved->p_W - p_W).norm(), 0.9) << "and it is the visitor";
 }

@@ -92,12 +92,15 @@ TEST(EvidenceMap, SumsAndClampsWhatScansSayOfACell) {
 TEST(EvidenceMap, ForgetsWhatWasSeenInPassingAndKeepsWhatHasSettled) {
   const Eigen::Vector3d point(1.55, 0.05, 0.05);
   const struct {
-    int hits;
-    double kept_s;  // after the last hit; by the sum of the hits, at most 2.8, at 7 a second
-  } cases[] = {{1, 0.1}, {3, 0.3}, {9, 0.4}, {10, 1e9}};
-  for (const auto& [hits, kept_s] : cases) {
-    EvidenceMap map(kGrid, Weighed(), {});
+    int free, hits;
+    double kept_s;  // after the last hit; by the sum, from -2.8 to at most 2.8, at 7 a second
+  } cases[] = {{0, 1, 1e9}, {3, 5, 0.1}, {3, 7, 0.3}, {3, 12, 0.4}, {3, 14, 1e9}};
+  EvidenceOptions options = Weighed();
+  options.decay_per_s = 7;
+  for (const auto& [free, hits, kept_s] : cases) {
+    EvidenceMap map(kGrid, options, {});
     double t_s = 0;
+    for (int n = 0; n < free; ++n) map.Update(Seen({}, {{2.55, 0.08, 0.08}}, t_s += 0.01));
     for (int n = 0; n < hits; ++n) map.Update(Seen({point}, {}, t_s += 0.01));
     for (double hidden_s = 0.01; hidden_s < 2; hidden_s += 0.01) {
       map.Update(Seen({{0.35, 0.02, 0.02}}, {}, t_s + hidden_s));
