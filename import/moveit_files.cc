@@ -30,7 +30,9 @@ Eigen::Quaterniond ReadRotation(const YamlReader& map, const std::string& key) {
   Eigen::Vector4d xyzw;
   if (map.IsMap(key)) {
     const YamlReader parts = map.GetMap(key);
-    xyzw << parts.GetDouble("x"), parts.GetDouble("y"), parts.GetDouble("z"), parts.GetDouble("w");
+    // Not by Eigen's <<, which ends the program where one of them throws in between.
+    const char* const keys[] = {"x", "y", "z", "w"};
+    for (int i = 0; i < 4; ++i) xyzw(i) = parts.GetDouble(keys[i]);
   } else {
     xyzw = map.GetVector(key, 4);
   }

@@ -142,6 +142,13 @@ INSTANTIATE_TEST_SUITE_P(
               ":7: world.collision_objects[0].primitive_poses[0].orientation: must be a quaternion "
               "x, "
               "y, z, w of length 1, has 0"},
+        Fault{
+            "TurnedByAWord", false,
+            "world:\n  collision_objects:\n    - id: a\n      primitives:\n"
+            "        - {type: sphere, dimensions: [1]}\n      primitive_poses:\n"
+            "        - {orientation: {x: 0, y: 0, z: are, w: 1}}\n",
+            ":7: world.collision_objects[0].primitive_poses[0].orientation.z: must be a number, is "
+            "'are'"},
         Fault{"NoGoal", true, "start_state: {}\n", ":1: goal_constraints: must list a goal"},
         Fault{"EmptyGoal", true, "goal_constraints:\n  - name: a\n",
               ":2: goal_constraints[0]: must have joint_constraints, or position_constraints and "
