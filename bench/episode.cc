@@ -319,7 +319,7 @@ class Loop {
     has_scan_ = true;
     model_->Observe(scans);
     for (TrackEvent& event : model_->TakeEvents()) recorder_.Keep(std::move(event));
-    for (const Scan& scan : scans) recorder_.Keep(scan, EpisodeTime(now_s_), model_->Occupancy());
+    recorder_.Keep(scans, EpisodeTime(now_s_), model_->Occupancy());
     if (safety_) world_.robot->Watch(safety_->Observe(scans));
   }
 

@@ -82,17 +82,19 @@ void EpisodeRecorder::Keep(ControlSample tick) {
   recording_.control.push_back(std::move(tick));
 }
 
-void EpisodeRecorder::Keep(const Scan& scan, EpisodeTime t_arrival,
+void EpisodeRecorder::Keep(const std::vector<Scan>& scans, EpisodeTime t_arrival,
                            const OccupancyGrid& occupancy) {
   record::ObservationRecord& record = recording_.observations.emplace_back();
-  record.t = scan.t;
+  record.t = scans.front().t;
   record.t_arrival = t_arrival;
   const std::vector<std::uint8_t>& cells = occupancy.cells;
   last_cells_.resize(cells.size(), 0);
   AppendChanges(last_cells_, cells, record.changed_cells);
   last_cells_ = cells;
-  for (const ObjectObservation& object : scan.objects) {
-    record.objects.push_back({object.id, object.X_WO, object.covariance});
+  for (const Scan& scan : scans) {
+    for (const ObjectObservation& object : scan.objects) {
+      record.objects.push_back({object.id, object.X_WO, object.covariance});
+    }
   }
 }
 

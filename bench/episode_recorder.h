@@ -26,8 +26,10 @@ class EpisodeRecorder {
   void Keep(CycleRecord cycle) { recording_.cycles.push_back(std::move(cycle)); }
   void Keep(TrackEvent event) { recording_.events.push_back(std::move(event)); }
   void Keep(SafetyEvent event) { recording_.safety.push_back(std::move(event)); }
-  /// @param occupancy what is filled after the scan, which arrived at `t_arrival`.
-  void Keep(const Scan& scan, EpisodeTime t_arrival, const OccupancyGrid& occupancy);
+  /// What sensors captured at one moment is one observation.
+  /// @param scans at least one, of one time of capture.
+  /// @param occupancy what is filled after these scans, which had arrived at `t_arrival`.
+  void Keep(const std::vector<Scan>& scans, EpisodeTime t_arrival, const OccupancyGrid& occupancy);
 
   const record::Recording& recording() const { return recording_; }
   /// What there is; nothing is kept after that.

@@ -14,8 +14,10 @@
 #include "sidestep/bench/resolve.h"
 #include "sidestep/bench/scenario_planner.h"
 #include "sidestep/core/shape.h"
+#include "sidestep/record/recording_file.h"
 #include "sidestep/sdf/tracking/object_tracker.h"
 #include "sidestep/sim/simulation.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sidestep {
 namespace {
@@ -80,6 +82,19 @@ struct Visit {
 };
 std::ostream& operator<<(std::ostream& stream, const Visit& visit) {
   return stream << visit.who << " " << visit.noise_per_m;
+}
+
+TEST(TwoCameras, ThatCaptureAtOneMomentAreOneObservationAndLetTheArmThrough) {
+  const Episode episode = RunRoom("walkway_depth", {});
+  EXPECT_EQ(episode.result.outcome, bench::Outcome::kGoal);
+  const record::Recording& recording = episode.result.recording;
+  const TemporaryFolder folder;
+  record::WriteRecording(recording, folder.path() / "trace.h5");
+  const record::Recording read = record::ReadRecording(folder.path() / "trace.h5");
+  ASSERT_EQ(read.observations.size(), recording.observations.size());
+  for (std::size_t i = 0; i < read.observations.size(); ++i) {
+    EXPECT_NEAR(read.observations[i].t.seconds(), static_cast<double>(i) / 30, 1e-3);
+  }
 }
 
 class Visitor : public ::testing::TestWithParam<Visit> {};
