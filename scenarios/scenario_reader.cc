@@ -15,6 +15,7 @@
 #include "sidestep/core/random.h"
 #include "sidestep/core/utf8.h"
 #include "sidestep/core/yaml_reader.h"
+#include "sidestep/scenarios/bounded_number.h"
 #include "sidestep/scenarios/scenario.h"
 #include "sidestep/scenarios/track_file.h"
 #include "sidestep/scenarios/variations.h"
@@ -539,18 +540,8 @@ void ReadSafety(const YamlReader& top, Scenario& scenario) {
 void ReadTracking(const YamlReader& top, Tracking& tracking) {
   if (!top.Has("tracking")) return;
   const YamlReader map = top.GetMap("tracking");
-  const auto at_most = [&](const char* key, double value, double most) {
-    if (value > most) {
-      map.Fail(key, "must be at most " + ShortestText(most) + ", is " + ShortestText(value));
-    }
-    return value;
-  };
-  if (map.Has("coast_s")) {
-    tracking.coast_s = at_most("coast_s", map.GetNonNegative("coast_s"), 10);
-  }
-  if (map.Has("max_speed_m_s")) {
-    tracking.max_speed_m_s = at_most("max_speed_m_s", map.GetPositive("max_speed_m_s"), 100);
-  }
+  tracking.coast_s = AtMost(map, "coast_s", tracking.coast_s, 10);
+  tracking.max_speed_m_s = PositiveAtMost(map, "max_speed_m_s", tracking.max_speed_m_s, 100);
   map.CheckNoUnknownKeys();
 }
 

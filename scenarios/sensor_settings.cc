@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sidestep/core/yaml_reader.h"
+#include "sidestep/scenarios/bounded_number.h"
 #include "sidestep/scenarios/yaml_text.h"
 
 namespace sidestep::scenarios {
@@ -16,19 +17,6 @@ constexpr int kMaxPixels = 2048;
 constexpr double kMaxLogOdds = 100, kMaxDecay = 1e4, kMaxSigmas = 20;
 constexpr double kMaxTag_m = 2, kMaxOutlier_m = 10;
 constexpr double kMaxDistortion = 1, kMaxExposure = 0.1, kMaxBlur = 10, kMaxGreyNoise = 100;
-
-double AtMost(const YamlReader& map, const char* key, double otherwise, double most) {
-  if (!map.Has(key)) return otherwise;
-  const double value = map.GetNonNegative(key);
-  if (value > most) map.Fail(key, "must be at most " + Number(most) + ", is " + Number(value));
-  return value;
-}
-
-double PositiveAtMost(const YamlReader& map, const char* key, double otherwise, double most) {
-  if (!map.Has(key)) return otherwise;
-  map.GetPositive(key);
-  return AtMost(map, key, otherwise, most);
-}
 
 int CountFrom1(const YamlReader& map, const char* key, int otherwise, int most) {
   if (!map.Has(key)) return otherwise;
