@@ -19,12 +19,16 @@ namespace {
 
 constexpr double kJudgeStep_s = 0.005, kAfterGoal_s = 0.5;
 
+bool IsToolHeldBack(const scenarios::Scenario& scenario) {
+  return std::isfinite(scenario.safety.tool_speed_m_s);
+}
+
 // Planners do not know how fast the tool may be: with more time they find slower motions.
 std::vector<double> HorizonsToTry(const scenarios::Scenario& scenario,
                                   const planner::Planner& planner) {
   constexpr double kMore = 1.5;
   const double horizon_s = HorizonOf(scenario, planner);
-  if (std::isinf(scenario.safety.tool_speed_m_s)) return {horizon_s};
+  if (!IsToolHeldBack(scenario)) return {horizon_s};
   return {horizon_s, kMore * horizon_s};
 }
 
@@ -58,8 +62,10 @@ FreePath SearchFreePath(const scenarios::Scenario& scenario, const robot::RobotM
     const planner::PlanResult result = planner->Plan(request);
     const std::optional<Trajectory>& motion = result.trajectory;
     if (!motion || result.status == planner::PlanStatus::kShortOfGoal) continue;
-    if (planner::GreatestToolSpeed_m_s(robot, *motion, 0) > scenario.safety.tool_speed_m_s)
+    if (IsToolHeldBack(scenario) &&
+        planner::GreatestToolSpeed_m_s(robot, *motion, 0) > scenario.safety.tool_speed_m_s) {
       continue;
+    }
     const EpisodeTime begin(0), end(motion->t_s(request.num_states - 1) + kAfterGoal_s);
     const double clearance_m =
         planner::MeasureClearance(robot, field, *motion, begin, begin, end, kJudgeStep_s).least_m;

@@ -274,13 +274,19 @@ TEST(TagCamera, HasTheErrorsThatItsCovarianceSays) {
   EXPECT_LT(StandardErrorsOff(across, 2, std::sqrt(4.0)), 4);
 }
 
-TEST(TagCamera, DoesNotFindWhatIsFarAwayOrBehindSomething) {
+// A cart passes behind a screen, before a camera of tags.
+scenarios::Scenario BehindAScreen() {
   scenarios::Scenario scenario = SwingingScenario();
   scenario.static_obstacles = {
       {"screen", Pose::Translation({1.2, 0.4, 0.6}), Box{{0.02, 0.4, 0.6}}}};
   scenario.moving_obstacles = {
       sim::Passing("cart", Sphere{0.1}, {0.8, -0.9, 0.6}, {0, 1, 0}, 0.15)};
   scenario.sensor.name = "tags";
+  return scenario;
+}
+
+TEST(TagCamera, DoesNotFindWhatIsFarAwayOrBehindSomething) {
+  scenarios::Scenario scenario = BehindAScreen();
   scenario.sensor.tags = scenarios::TagSettings{.position_m = {2, 0.4, 0.6}, .range_m = 1.5};
   const record::Recording recording = Record(scenario);
   int found = 0;
@@ -409,12 +415,7 @@ TEST(TagCamera, FlipsATagAboutItsLineOfSight) {
 }
 
 TEST(TagCamera, FindsATagOfSomeSizeOnlyIfAllOfItIsInSightOrBadlyIfItMay) {
-  scenarios::Scenario scenario = SwingingScenario();
-  scenario.static_obstacles = {
-      {"screen", Pose::Translation({1.2, 0.4, 0.6}), Box{{0.02, 0.4, 0.6}}}};
-  scenario.moving_obstacles = {
-      sim::Passing("cart", Sphere{0.1}, {0.8, -0.9, 0.6}, {0, 1, 0}, 0.15)};
-  scenario.sensor.name = "tags";
+  scenarios::Scenario scenario = BehindAScreen();
   constexpr double kSize_m = 0.2;
   for (const double partly_hidden : {0.0, 1.0}) {
     scenario.sensor.tags = scenarios::TagSettings{.position_m = {2, 0.4, 0.6},
