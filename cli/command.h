@@ -23,6 +23,7 @@ void AddBenchCommand(CommandLine& line);
 void AddCheckRobotCommand(CommandLine& line);
 void AddSalvageCommand(CommandLine& line);
 void AddRenderCommand(CommandLine& line);
+void AddViewCommand(CommandLine& line);
 void AddReproduceCommand(CommandLine& line);
 void AddStudyCommand(CommandLine& line);
 void AddDoctorCommand(CommandLine& line);

@@ -58,6 +58,7 @@ int Run(int argc, char** argv) {
   sidestep::cli::AddCompareCommand(line);
   sidestep::cli::AddSalvageCommand(line);
   sidestep::cli::AddRenderCommand(line);
+  sidestep::cli::AddViewCommand(line);
   sidestep::cli::AddReproduceCommand(line);
   sidestep::cli::AddStudyCommand(line);
   sidestep::cli::AddAuditCommand(line);
