@@ -25,6 +25,7 @@ void AddSalvageCommand(CommandLine& line);
 void AddRenderCommand(CommandLine& line);
 void AddReproduceCommand(CommandLine& line);
 void AddStudyCommand(CommandLine& line);
+void AddSweepCommand(CommandLine& line);
 void AddDoctorCommand(CommandLine& line);
 void AddFieldCommand(CommandLine& line);
 void AddFciServerCommand(CommandLine& line);
