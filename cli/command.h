@@ -26,6 +26,7 @@ void AddRenderCommand(CommandLine& line);
 void AddViewCommand(CommandLine& line);
 void AddReproduceCommand(CommandLine& line);
 void AddStudyCommand(CommandLine& line);
+void AddSweepCommand(CommandLine& line);
 void AddDoctorCommand(CommandLine& line);
 void AddFieldCommand(CommandLine& line);
 void AddFciServerCommand(CommandLine& line);

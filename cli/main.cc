@@ -61,6 +61,7 @@ int Run(int argc, char** argv) {
   sidestep::cli::AddViewCommand(line);
   sidestep::cli::AddReproduceCommand(line);
   sidestep::cli::AddStudyCommand(line);
+  sidestep::cli::AddSweepCommand(line);
   sidestep::cli::AddAuditCommand(line);
   sidestep::cli::AddBenchCommand(line);
   sidestep::cli::AddImportCommand(line);
