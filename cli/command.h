@@ -24,6 +24,7 @@ void AddCheckRobotCommand(CommandLine& line);
 void AddSalvageCommand(CommandLine& line);
 void AddRenderCommand(CommandLine& line);
 void AddViewCommand(CommandLine& line);
+void AddReportCommand(CommandLine& line);
 void AddReproduceCommand(CommandLine& line);
 void AddStudyCommand(CommandLine& line);
 void AddSweepCommand(CommandLine& line);

@@ -59,6 +59,7 @@ int Run(int argc, char** argv) {
   sidestep::cli::AddSalvageCommand(line);
   sidestep::cli::AddRenderCommand(line);
   sidestep::cli::AddViewCommand(line);
+  sidestep::cli::AddReportCommand(line);
   sidestep::cli::AddReproduceCommand(line);
   sidestep::cli::AddStudyCommand(line);
   sidestep::cli::AddSweepCommand(line);

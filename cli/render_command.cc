@@ -2,15 +2,20 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "sidestep/bench/database/run_choice.h"
+#include "sidestep/bench/database/run_database.h"
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/number_range.h"
+#include "sidestep/cli/out_folder.h"
+#include "sidestep/cli/run_traces.h"
 #include "sidestep/cli/trace_files.h"
 #include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
@@ -24,6 +29,9 @@ namespace {
 
 struct RenderOptions {
   std::vector<std::string> traces;
+  std::string database;  // whose runs are filmed instead
+  bench::RunChoice choice;
+  bool alone = false;
   std::string video, still;
   std::optional<double> at_s;
   std::string size = "1280x720";
@@ -89,7 +97,7 @@ bool ShowProgress(int done, int total) {
   return interrupted == 0;
 }
 
-int Render(const RenderOptions& options) {
+int RenderTraces(const RenderOptions& options) {
   if (options.video.empty() && options.still.empty()) {
     throw InputError("--out", "give --out FILE.mp4, --still FILE.png, or both");
   }
@@ -128,15 +136,66 @@ int Render(const RenderOptions& options) {
   return 0;
 }
 
+// Those of a chosen run and of the one beside it, as far as they are kept.
+RenderOptions TracesOf(const bench::ChosenRun& run, const RunTraces& traces,
+                       const RenderOptions& options) {
+  RenderOptions film = options;
+  const auto add = [&](std::int64_t id, const std::string& name, const std::string& command) {
+    if (const std::optional<std::string> trace = traces.Find(id)) {
+      film.traces.push_back(*trace);
+      film.titles.push_back(name.empty() ? "run " + std::to_string(id) : name);
+    } else {
+      PrintError("run {} has no trace{}\n", id,
+                 command.empty() ? "" : "; it is made again by: " + command);
+    }
+  };
+  add(run.id, run.name, run.command);
+  if (run.beside_id && !options.alone) add(*run.beside_id, run.beside_name, run.beside_command);
+  return film;
+}
+
+// Of every chosen run a film of its own, in the folder that --out names.
+int RenderChosen(const RenderOptions& options) {
+  if (!options.traces.empty())
+    throw InputError("--from", "films runs of a database: give no TRACE");
+  if (!options.still.empty() || !options.titles.empty()) {
+    throw InputError("--from", "makes one video a run, without --still and --title");
+  }
+  if (options.video.empty()) throw InputError("--out", "give a folder for the videos");
+  const bench::RunDatabase database(options.database);
+  const std::vector<bench::ChosenRun> runs = bench::ChooseRuns(database, options.choice);
+  if (runs.empty()) throw InputError("--where", "no run of " + options.database + " is like that");
+  const std::string folder = MakeOutFolder(options.video, {});
+  const RunTraces traces(database, options.database);
+  int num_films = 0;
+  for (const bench::ChosenRun& run : runs) {
+    RenderOptions film = TracesOf(run, traces, options);
+    if (film.traces.empty()) continue;
+    film.video = folder + "/run-" + std::to_string(run.id) + ".mp4";
+    Print("run {}: {}\n", run.id, run.what);
+    if (RenderTraces(film) != 0) return 1;
+    ++num_films;
+  }
+  if (num_films > 0) return 0;
+  PrintError("no trace of these runs is kept (a sweep keeps them with `traces: all`)\n");
+  return 1;
+}
+
+int Render(const RenderOptions& options) {
+  if (!options.database.empty()) return RenderChosen(options);
+  if (options.traces.empty()) throw InputError("TRACE", "give one or more traces, or --from DB");
+  return RenderTraces(options);
+}
+
 }  // namespace
 
 void AddRenderCommand(CommandLine& line) {
   auto options = std::make_shared<RenderOptions>();
   CLI::App* const render = line.app.add_subcommand(
       "render", "Film one or more traces side by side, without a display; or draw a still");
-  render->add_option("TRACE", options->traces, "trace.h5 of `sidestep run`, one or more")
-      ->required();
-  render->add_option("--out", options->video, "The video to write, FILE.mp4");
+  render->add_option("TRACE", options->traces, "trace.h5 of `sidestep run`, one or more");
+  render->add_option("--out", options->video,
+                     "The video to write, FILE.mp4; with --from a folder for them");
   render->add_option("--still", options->still, "A picture to write, FILE.png");
   render
       ->add_option("--at", options->at_s,
@@ -152,6 +211,31 @@ void AddRenderCommand(CommandLine& line) {
   render->add_option("--camera", options->camera, "A camera of the model [chosen to fit]");
   render->add_option("--title", options->titles,
                      "A title for each trace [what its planner was told]");
+  CLI::Option* const from =
+      render->add_option("--from", options->database,
+                         "results.db of `sidestep sweep`, whose runs are filmed, each beside the\n"
+                         "same case under the other value of what the sweep asks");
+  render
+      ->add_option("--where", options->choice.where,
+                   "Which runs: an SQL expression over the columns of `results` [all]")
+      ->needs(from);
+  render
+      ->add_option("--order", options->choice.order,
+                   "Which first: terms of SQL's ORDER BY [min_clearance_m]")
+      ->needs(from);
+  render->add_option("--top", options->choice.top, "At most so many runs [4]")
+      ->needs(from)
+      ->check(NumberFrom(1, 1000));
+  render->add_flag("--alone", options->alone, "Only the runs themselves, nothing beside them")
+      ->needs(from);
+  render->footer(
+      "Of the run beside, columns are called beside_COLUMN. So the largest paired difference is\n"
+      "  sidestep render --from DB --order 'abs(min_clearance_m - beside_min_clearance_m) DESC' "
+      "--top 1 --out DIR\n"
+      "and every collision that the other one does not have\n"
+      "  sidestep render --from DB --where \"outcome = 'collision' AND beside_outcome = 'goal'\" "
+      "--top 100 --out DIR\n"
+      "Films are made of kept traces alone (`traces: all` or `failures` in the sweep's file).");
   render->callback([&line, options] { line.exit_code = Render(*options); });
 }
 

@@ -10,15 +10,7 @@
 namespace sidestep::bench {
 namespace {
 
-// Okabe and Ito's colours, which the colour-blind can tell apart.
-constexpr const char* kPalette[] = {"#999999", "#d55e00", "#0072b2", "#009e73",
-                                    "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
 constexpr const char* kNotFinite = "NaN";
-
-std::string Color(int color) {
-  constexpr int kColors = static_cast<int>(std::size(kPalette));
-  return kPalette[((color % kColors) + kColors) % kColors];
-}
 
 // Text in single quotes, as gnuplot reads it: nothing in it is special but the quote.
 std::string Quoted(const std::string& text) {
@@ -52,7 +44,7 @@ void WriteData(std::string& script, const Series& series, const std::string& blo
 }
 
 std::string Look(const Series& series) {
-  const std::string color = " lc rgb '" + Color(series.color) + "'";
+  const std::string color = " lc rgb '" + FigureColor(series.color) + "'";
   switch (series.style) {
     case Series::Style::kLine:
       return "with linespoints pt 7 ps 0.6 lw 2" + color;
@@ -60,6 +52,8 @@ std::string Look(const Series& series) {
       return "with lines lw 2" + color;
     case Series::Style::kOpenPoints:
       return "with points pt 6 ps 1.3 lw 1.5" + color;
+    case Series::Style::kBars:
+      return "with yerrorbars pt 7 ps 0.8 lw 1.5" + color;
   }
   return "";
 }
@@ -67,7 +61,19 @@ std::string Look(const Series& series) {
 void WritePanel(std::string& script, const Panel& panel, std::size_t index) {
   script += "set title " + Quoted(panel.title) + "\nset xlabel " + Quoted(panel.x_label) +
             " offset 0,0.4\nset ylabel " + Quoted(panel.y_label) + "\n" +
-            (panel.log_y ? "set" : "unset") + " logscale y\n";
+            (panel.log_x ? "set" : "unset") + " logscale x\n" + (panel.log_y ? "set" : "unset") +
+            " logscale y\n";
+  if (panel.x_names.empty()) {
+    script += "set xtics auto\nset xrange [*:*]\n";
+  } else {
+    std::string names;
+    for (std::size_t i = 0; i < panel.x_names.size(); ++i) {
+      names += (i == 0 ? "" : ", ") + Quoted(panel.x_names[i]) + " " + std::to_string(i);
+    }
+    script += "set xtics (" + names +
+              ")\nset xrange [-0.5:" + Number(static_cast<double>(panel.x_names.size()) - 0.5) +
+              "]\n";
+  }
   if (panel.y_range.size() == 2) {
     script += "set yrange [" + Number(panel.y_range[0]) + ":" + Number(panel.y_range[1]) + "]\n";
   } else {
@@ -75,14 +81,15 @@ void WritePanel(std::string& script, const Panel& panel, std::size_t index) {
   }
   std::string separator = "plot ";
   for (std::size_t i = 0; i < panel.series.size(); ++i) {
-    if (panel.series[i].low.empty()) continue;
+    if (panel.series[i].low.empty() || panel.series[i].style == Series::Style::kBars) continue;
     script += separator + BlockName(index, i) + " using 1:3:4 with filledcurves fs transparent " +
-              "solid 0.10 noborder lc rgb '" + Color(panel.series[i].color) + "' notitle";
+              "solid 0.10 noborder lc rgb '" + FigureColor(panel.series[i].color) + "' notitle";
     separator = ", \\\n     ";
   }
   for (std::size_t i = 0; i < panel.series.size(); ++i) {
     const Series& series = panel.series[i];
-    script += separator + BlockName(index, i) + " using 1:2 " + Look(series) + " " +
+    script += separator + BlockName(index, i) + " using " +
+              (series.style == Series::Style::kBars ? "1:2:3:4 " : "1:2 ") + Look(series) + " " +
               (series.title.empty() ? "notitle" : "title " + Quoted(series.title));
     separator = ", \\\n     ";
   }
@@ -90,6 +97,14 @@ void WritePanel(std::string& script, const Panel& panel, std::size_t index) {
 }
 
 }  // namespace
+
+std::string FigureColor(int color) {
+  // Okabe and Ito's colours, which the colour-blind can tell apart.
+  constexpr const char* kPalette[] = {"#999999", "#d55e00", "#0072b2", "#009e73",
+                                      "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
+  constexpr int kColors = static_cast<int>(std::size(kPalette));
+  return kPalette[((color % kColors) + kColors) % kColors];
+}
 
 std::string ToGnuplot(const Figure& figure, const std::string& stem) {
   std::string script;

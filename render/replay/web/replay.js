@@ -40,7 +40,8 @@ function mountReplay(root, data, options = {}) {
     onclick: () => setTheme(themeNow() === "dark" ? "light" : "dark"),
   }, "◐");
   const scenario = (traces[0].facts.find(([name]) => name === "scenario") || ["", traces[0].name])[1];
-  const header = make("header", {}, make("h1", {}, scenario), clock, themeButton);
+  const header = make("header", {}, make(options.embedded ? "h3" : "h1", {}, scenario), clock);
+  if (!options.embedded) header.append(themeButton);
 
   const canvas = make("canvas", {role: "img",
                                  "aria-label": "The robot and what moves around it, in three dimensions"});
@@ -301,8 +302,9 @@ function mountReplay(root, data, options = {}) {
   // --- Light and dark, keys, sizes --------------------------------------------------------------
 
   const prefersDark = window.matchMedia("(prefers-color-scheme: dark)");
+  const page = document.documentElement;
   function themeNow() {
-    return state.theme || (prefersDark.matches ? "dark" : "light");
+    return state.theme || page.dataset.theme || (prefersDark.matches ? "dark" : "light");
   }
   function setTheme(theme) {
     state.theme = theme;
@@ -311,6 +313,8 @@ function mountReplay(root, data, options = {}) {
     draw();
   }
   prefersDark.addEventListener("change", () => setTheme(state.theme));
+  new MutationObserver(() => setTheme(state.theme))
+      .observe(page, {attributes: true, attributeFilter: ["data-theme"]});
 
   const keys = {
     " ": () => (state.playing ? pause() : play()),
