@@ -24,7 +24,7 @@ struct Series {
 struct Panel {
   std::string title, x_label, y_label;
   bool log_y = false;
-  std::vector<double> y_range;            ///< empty: as the data want; else two numbers
+  std::vector<double> y_range;  ///< empty: as the data want; else two numbers
   std::vector<Series> series;
   bool log_x = false;
   /// What x = 0, 1, 2, ... are called; empty: numbers.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sidestep/bench/metrics/registry.h"
 #include "sidestep/bench/report/svg.h"
 #include "sidestep/core/markup.h"
 #include "sidestep/core/number_text.h"
@@ -15,6 +14,7 @@ namespace sidestep::bench {
 namespace {
 
 constexpr const char* kNothing = "–";
+constexpr int kFigureWidth = 450, kFigureHeight = 300;  // so that letters can be read on a phone
 
 const FactorColumn& FactorOf(const RunTable& runs, const Question& question) {
   return runs.factors[static_cast<std::size_t>(question.factor)];
@@ -24,15 +24,26 @@ std::string LevelOf(const RunTable& runs, const Question& question, int level) {
   return FactorOf(runs, question).values[static_cast<std::size_t>(level)];
 }
 
-std::string UnitOf(const std::string& column) {
-  for (const Metric& metric : Metrics()) {
-    if (metric.name == column) return metric.unit == std::string("1") ? "" : metric.unit;
+// How a column is told to people.
+struct Told {
+  const char *column, *label;
+  double scale;
+};
+constexpr Told kTold[] = {{"min_clearance_m", "least clearance [mm]", 1e3},
+                          {"time_to_goal_s", "time to the goal [s]", 1},
+                          {"gp_cost", "GP cost", 1},
+                          {"jerk_rms", "jerk, RMS [rad/s³]", 1},
+                          {"cycle_p95_ms", "planning cycle, 95th percentile [ms]", 1}};
+
+Told ToldOf(const std::string& column) {
+  for (const Told& told : kTold) {
+    if (told.column == column) return told;
   }
-  return column.ends_with("_ms") ? "ms" : "";
+  return {column.c_str(), column.c_str(), 1};
 }
 
 std::string Number(double value) { return FiniteText("{:.4g}", value, kNothing); }
-std::string Signed(double value) { return FiniteText("{:+.4g}", value, kNothing); }
+std::string Signed(double value) { return FiniteText("{:+.3g}", value, kNothing); }
 
 }  // namespace
 
@@ -46,9 +57,15 @@ std::string Paragraph(const std::string& text_html, const std::string& css_class
 }
 
 std::string FigureHtml(const Panel& panel, const std::string& caption) {
-  return "<figure>" + ToSvg(panel, SvgPlace::kPage) +
+  return "<figure>" + ToSvg(panel, SvgPlace::kPage, kFigureWidth, kFigureHeight) +
          (caption.empty() ? "" : "<figcaption>" + Escaped(caption) + "</figcaption>") +
          "</figure>\n";
+}
+
+std::string Breakable(const std::string& name) {
+  std::string text;
+  for (const char c : Escaped(name)) text += c == '_' ? "_<wbr>" : std::string(1, c);
+  return text;
 }
 
 std::string TableHtml(const std::vector<std::vector<std::string>>& rows_html,
@@ -141,17 +158,17 @@ std::string MetricsTableHtml(const RunTable& runs, const Comparison& comparison)
   if (comparison.metrics.empty()) return "";
   const Question& question = comparison.question;
   std::vector<std::vector<std::string>> rows = {
-      {"median of", Escaped(LevelOf(runs, question, question.of)),
-       Escaped(LevelOf(runs, question, question.with)), "difference (95 %)", "pairs"}};
+      {"median of", Breakable(LevelOf(runs, question, question.of)),
+       Breakable(LevelOf(runs, question, question.with)), "difference (95 %)", "pairs"}};
   for (const MetricComparison& metric : comparison.metrics) {
-    const std::string unit = UnitOf(metric.column);
-    std::string difference = Signed(metric.difference);
+    const Told told = ToldOf(metric.column);
+    std::string difference = Signed(told.scale * metric.difference);
     if (std::isfinite(metric.interval.low)) {
-      difference +=
-          " (" + Signed(metric.interval.low) + " to " + Signed(metric.interval.high) + ")";
+      difference += " (" + Signed(told.scale * metric.interval.low) + " to " +
+                    Signed(told.scale * metric.interval.high) + ")";
     }
-    rows.push_back({Escaped(metric.column + (unit.empty() ? "" : " [" + unit + "]")),
-                    Number(metric.of), Number(metric.with), difference,
+    rows.push_back({Escaped(told.label), Number(told.scale * metric.of),
+                    Number(told.scale * metric.with), difference,
                     std::to_string(metric.num_pairs)});
   }
   return TableHtml(rows);

@@ -18,6 +18,8 @@ std::string Heading(const std::string& text);
 std::string Paragraph(const std::string& text_html, const std::string& css_class = "");
 /// With a caption, in the colours of the page.
 std::string FigureHtml(const Panel& panel, const std::string& caption);
+/// A name as HTML that may be broken after its underscores.
+std::string Breakable(const std::string& name);
 /// The first row is its head. Cells are HTML.
 std::string TableHtml(const std::vector<std::vector<std::string>>& rows_html,
                       const std::vector<std::string>& column_classes = {});

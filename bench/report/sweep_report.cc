@@ -304,9 +304,7 @@ class Page {
          "How many runs came at least this near to something; below 0 they touched it.", 1e3,
          false},
         {"cycle_time_ecdf", "cycle_p50_ms", "median planning cycle of the run [ms of CPU time]",
-         "How long runs' planning cycles took.", 1, true},
-        {"slowest_cycle_ecdf", "cycle_max_ms", "slowest planning cycle of the run [ms of CPU time]",
-         "How long the slowest cycle of each run took.", 1, true}};
+         "How long runs' planning cycles took.", 1, true}};
     body_ += Heading("Distributions");
     body_ += "<div class=\"figures\">\n";
     for (const auto& [name, column, label, caption, scale, log_x] : shown) {
@@ -456,11 +454,10 @@ class Page {
     body_ += "<details" + std::string(rows.size() <= 25 ? " open" : "") + "><summary>" +
              Escaped("Each of them, and how to run it again (" + which + ")") + "</summary>\n" +
              TableHtml(rows, classes) + "</details>\n";
-    body_ += Paragraph(
-        "Videos of the worst of them: " +
-            CommandHtml("sidestep render --from " + request_.database +
-                        " --where \"outcome = 'collision'\" --order min_clearance_m --top 4"),
-        "note");
+    body_ += Paragraph("Videos of the worst of them, where their traces are kept:", "note") +
+             CommandHtml(
+                 "sidestep render --from " + request_.database +
+                 " --where \"outcome = 'collision'\" --order min_clearance_m --top 4 --out films");
   }
 
   // --- Replays, and where it all comes from
