@@ -21,11 +21,11 @@ constexpr std::uint64_t kSeed = 1;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kNothing = "–";
 
-bool ReachedGoal(const StudyRow& row) { return row.outcome == ToString(Outcome::kGoal); }
+bool ReachedGoal(const RunRow& row) { return row.outcome == ToString(Outcome::kGoal); }
 
-double GoalOf(const StudyRow& row) { return ReachedGoal(row) ? 100 : 0; }
+double GoalOf(const RunRow& row) { return ReachedGoal(row) ? 100 : 0; }
 
-double MetricOf(const StudyRow& row, const char* name) {
+double MetricOf(const RunRow& row, const char* name) {
   const auto found = row.metrics.find(name);
   return found == row.metrics.end() ? kNone : found->second;
 }
@@ -34,7 +34,7 @@ double MetricOf(const StudyRow& row, const char* name) {
 struct Measure {
   const char* title;
   int digits;
-  double (*of)(const StudyRow&);
+  double (*of)(const RunRow&);
   double (*middle)(const std::vector<double>&);
 };
 
@@ -47,20 +47,20 @@ double Median(const std::vector<double>& values) { return Quantile(values, 0.5);
 
 const Measure kMeasures[] = {
     {"goal [%]", 1, &GoalOf, &Mean},
-    {"clearance [mm]", 1,
-     [](const StudyRow& row) { return 1e3 * MetricOf(row, "min_clearance_m"); }, &Median},
+    {"clearance [mm]", 1, [](const RunRow& row) { return 1e3 * MetricOf(row, "min_clearance_m"); },
+     &Median},
     {"time [s]", 3,
-     [](const StudyRow& row) { return ReachedGoal(row) ? MetricOf(row, "time_to_goal_s") : kNone; },
+     [](const RunRow& row) { return ReachedGoal(row) ? MetricOf(row, "time_to_goal_s") : kNone; },
      &Median},
     {"jerk [rad/s³]", 1,
-     [](const StudyRow& row) { return ReachedGoal(row) ? MetricOf(row, "jerk_rms") : kNone; },
+     [](const RunRow& row) { return ReachedGoal(row) ? MetricOf(row, "jerk_rms") : kNone; },
      &Median},
 };
 
 // One episode under two treatments: what is looked at, and what it is set beside.
 struct Pair {
-  const StudyRow* row;
-  const StudyRow* beside;
+  const RunRow* row;
+  const RunRow* beside;
 };
 using Clusters = std::vector<std::vector<Pair>>;
 
@@ -127,11 +127,11 @@ std::string RowText(const std::string& down, const std::string& across, const Cl
 }
 
 // Episodes that differ by the factor across alone, by its value.
-using Treated = std::map<std::string, const StudyRow*>;
+using Treated = std::map<std::string, const RunRow*>;
 
-std::map<Factors, Treated> ByAllElse(const std::vector<StudyRow>& rows, const std::string& across) {
+std::map<Factors, Treated> ByAllElse(const std::vector<RunRow>& rows, const std::string& across) {
   std::map<Factors, Treated> episodes;
-  for (const StudyRow& row : rows) {
+  for (const RunRow& row : rows) {
     if (row.outcome == kFailed) continue;
     Factors all_else = row.factors;
     all_else.erase(across);
@@ -171,7 +171,7 @@ std::string HeadText(const TableAxes& axes) {
 
 }  // namespace
 
-std::string PairedTable(const std::vector<StudyRow>& rows, const TableAxes& axes) {
+std::string PairedTable(const std::vector<RunRow>& rows, const TableAxes& axes) {
   const auto& [down, across] = axes;
   const std::vector<std::string> columns = FactorValues(rows, across);
   if (columns.size() < 2) return "";

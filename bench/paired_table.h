@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "sidestep/bench/study.h"
+#include "sidestep/bench/run_row.h"
 #include "sidestep/bench/study_page.h"
 
 namespace sidestep::bench {
@@ -18,6 +18,6 @@ namespace sidestep::bench {
 /// (of time and jerk: of pairs that both reached the goal). Intervals of 95 % come from a bootstrap
 /// over seeds, since episodes of one seed resemble each other.
 /// Empty where the factor across does not vary.
-std::string PairedTable(const std::vector<StudyRow>& rows, const TableAxes& axes);
+std::string PairedTable(const std::vector<RunRow>& rows, const TableAxes& axes);
 
 }  // namespace sidestep::bench

@@ -24,7 +24,7 @@ using nlohmann::json;
 
 constexpr const char* kFirstLine = "{\"format\":\"sidestep-study-2\"}\n";
 
-json ToJson(const StudyRow& row) {
+json ToJson(const RunRow& row) {
   json metrics = json::object();
   for (const auto& [name, value] : row.metrics) {
     metrics[name] = std::isnan(value) ? json() : json(value);
@@ -42,8 +42,8 @@ json ToJson(const StudyRow& row) {
 }
 
 // Throws json::exception for anything else.
-StudyRow FromJson(const json& line) {
-  StudyRow row;
+RunRow FromJson(const json& line) {
+  RunRow row;
   line.at("factors").get_to(row.factors);
   line.at("drawn").get_to(row.drawn);
   line.at("outcome").get_to(row.outcome);
@@ -102,7 +102,7 @@ void StudyLog::Read(bool resume) {
   for (std::size_t end; (end = all.find('\n', begin)) != std::string::npos; begin = end + 1) {
     const std::string place = path_ + ":" + std::to_string(number);
     try {
-      StudyRow row = FromJson(json::parse(all.substr(begin, end - begin)));
+      RunRow row = FromJson(json::parse(all.substr(begin, end - begin)));
       if (row.outcome != kFailed && !OutcomeFromString(row.outcome)) {
         throw InputError(place, "outcome: no outcome is '" + row.outcome + "'");
       }
@@ -115,12 +115,12 @@ void StudyLog::Read(bool resume) {
   if (ftruncate(file_, static_cast<off_t>(begin)) != 0) Fail("cannot be written");
 }
 
-const StudyRow* StudyLog::Find(const Factors& factors) const {
+const RunRow* StudyLog::Find(const Factors& factors) const {
   const auto found = rows_.find(factors);
   return found == rows_.end() ? nullptr : &found->second;
 }
 
-void StudyLog::Append(const StudyRow& row) { Write(JsonLine(ToJson(row)) + "\n"); }
+void StudyLog::Append(const RunRow& row) { Write(JsonLine(ToJson(row)) + "\n"); }
 
 void StudyLog::Write(const std::string& line) {
   for (std::size_t done = 0; done < line.size();) {

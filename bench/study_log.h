@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "sidestep/bench/study.h"
+#include "sidestep/bench/run_row.h"
 
 namespace sidestep::bench {
 
@@ -23,12 +23,12 @@ class StudyLog {
 
   /// Of the rows that were there: the latest with these factors, or null. Its trace and command are
   /// not filled.
-  const StudyRow* Find(const Factors& factors) const;
+  const RunRow* Find(const Factors& factors) const;
   /// All rows that were there, the latest with its factors each.
-  const std::map<Factors, StudyRow>& rows() const { return rows_; }
+  const std::map<Factors, RunRow>& rows() const { return rows_; }
   /// On the disk when it returns. Only from one thread at a time.
   /// @throws InputError if it cannot be written.
-  void Append(const StudyRow& row);
+  void Append(const RunRow& row);
 
  private:
   void Read(bool resume);
@@ -37,7 +37,7 @@ class StudyLog {
 
   std::string path_;
   int file_ = -1;
-  std::map<Factors, StudyRow> rows_;
+  std::map<Factors, RunRow> rows_;
 };
 
 }  // namespace sidestep::bench

@@ -12,14 +12,14 @@ namespace {
 constexpr std::size_t kMostValues = 12;  // of a factor that are listed
 
 // A row's value of a factor; without a name, all rows are alike.
-std::string ValueOf(const StudyRow& row, const std::string& factor) {
+std::string ValueOf(const RunRow& row, const std::string& factor) {
   return factor.empty() ? "episodes" : row.factors.at(factor);
 }
 
 struct Tally {
   int goal = 0, episodes = 0;
 
-  void Count(const StudyRow& row) {
+  void Count(const RunRow& row) {
     ++episodes;
     goal += row.outcome == ToString(Outcome::kGoal) ? 1 : 0;
   }
@@ -34,7 +34,7 @@ std::string Listed(const std::vector<std::string>& values) {
 }
 
 // A line for each factor that varies, and one for those that do not.
-std::string FactorLines(const std::vector<StudyRow>& rows) {
+std::string FactorLines(const std::vector<RunRow>& rows) {
   std::string varied, fixed;
   for (const auto& entry : rows.front().factors) {
     const std::string& factor = entry.first;
@@ -48,7 +48,7 @@ std::string FactorLines(const std::vector<StudyRow>& rows) {
   return varied + fixed;
 }
 
-std::string PairedText(const std::vector<StudyRow>& rows, const TableAxes& axes) {
+std::string PairedText(const std::vector<RunRow>& rows, const TableAxes& axes) {
   const std::string table = PairedTable(rows, axes);
   if (table.empty()) return "";
   return "\nThe same episodes with each value of " + TableCell(axes.across) +
@@ -70,18 +70,17 @@ std::string TableCell(const std::string& text) {
   return plain;
 }
 
-std::vector<std::string> FactorValues(const std::vector<StudyRow>& rows,
-                                      const std::string& factor) {
+std::vector<std::string> FactorValues(const std::vector<RunRow>& rows, const std::string& factor) {
   std::vector<std::string> values;
   std::set<std::string> seen;
-  for (const StudyRow& row : rows) {
+  for (const RunRow& row : rows) {
     const std::string value = ValueOf(row, factor);
     if (seen.insert(value).second) values.push_back(value);
   }
   return values;
 }
 
-std::string OutcomeTable(const std::vector<StudyRow>& rows, const TableAxes& axes) {
+std::string OutcomeTable(const std::vector<RunRow>& rows, const TableAxes& axes) {
   const auto& [down, across] = axes;
   const std::vector<std::string> columns = FactorValues(rows, across);
   const std::vector<std::string> lines =
@@ -89,7 +88,7 @@ std::string OutcomeTable(const std::vector<StudyRow>& rows, const TableAxes& axe
   std::map<std::string, std::map<std::string, Tally>> cells;
   std::map<std::string, Tally> totals;
   std::map<std::string, std::map<std::string, int>> endings;
-  for (const StudyRow& row : rows) {
+  for (const RunRow& row : rows) {
     const std::string column = ValueOf(row, across);
     cells[ValueOf(row, down)][column].Count(row);
     totals[column].Count(row);
@@ -113,7 +112,7 @@ std::string OutcomeTable(const std::vector<StudyRow>& rows, const TableAxes& axe
   return text + "\n";
 }
 
-std::string StudyPage(const StudySubject& subject, const std::vector<StudyRow>& rows,
+std::string StudyPage(const StudySubject& subject, const std::vector<RunRow>& rows,
                       const TableAxes& axes) {
   return "# Study of " + TableCell(subject.scenario) + "\n\n" + TableCell(subject.description) +
          "\n\n" + FactorLines(rows) + "- " + std::to_string(rows.size()) +

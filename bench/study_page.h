@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "sidestep/bench/study.h"
+#include "sidestep/bench/run_row.h"
 
 namespace sidestep::bench {
 
@@ -16,12 +16,12 @@ struct TableAxes {
 std::string TableCell(const std::string& text);
 
 /// The values of a factor, in the order in which they come; one word for a factor without a name.
-std::vector<std::string> FactorValues(const std::vector<StudyRow>& rows, const std::string& factor);
+std::vector<std::string> FactorValues(const std::vector<RunRow>& rows, const std::string& factor);
 
 /// A Markdown table: how many episodes reached the goal touching nothing, of how many, for each
 /// value of one factor (down) and another (across), in the order in which they come; below it how
 /// the others ended. Without `down` only the sums; without `across` one column.
-std::string OutcomeTable(const std::vector<StudyRow>& rows, const TableAxes& axes);
+std::string OutcomeTable(const std::vector<RunRow>& rows, const TableAxes& axes);
 
 /// What a study is of.
 struct StudySubject {
@@ -32,7 +32,7 @@ struct StudySubject {
 
 /// A page in Markdown: of what the study is, what is varied, its table, and where something varies
 /// across, what that does to the same episodes (bench/paired_table.h).
-std::string StudyPage(const StudySubject& subject, const std::vector<StudyRow>& rows,
+std::string StudyPage(const StudySubject& subject, const std::vector<RunRow>& rows,
                       const TableAxes& axes);
 
 }  // namespace sidestep::bench

@@ -58,8 +58,10 @@ int Run(int argc, char** argv) {
   sidestep::cli::AddCompareCommand(line);
   sidestep::cli::AddSalvageCommand(line);
   sidestep::cli::AddRenderCommand(line);
+  sidestep::cli::AddViewCommand(line);
   sidestep::cli::AddReproduceCommand(line);
   sidestep::cli::AddStudyCommand(line);
+  sidestep::cli::AddSweepCommand(line);
   sidestep::cli::AddAuditCommand(line);
   sidestep::cli::AddBenchCommand(line);
   sidestep::cli::AddImportCommand(line);

@@ -3,20 +3,17 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/number_range.h"
-#include "sidestep/cli/run_folder.h"
+#include "sidestep/cli/trace_files.h"
 #include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
-#include "sidestep/record/recording_file.h"
 #include "sidestep/render/comparison.h"
 #include "sidestep/render/gl_context.h"
 #include "sidestep/render/video.h"
@@ -63,15 +60,6 @@ void ParseSize(const std::string& text, render::PictureOptions* picture) {
 }
 
 // Before anything is drawn.
-void CheckIsNoTrace(const std::string& output, const RenderOptions& options) {
-  for (const std::string& trace : options.traces) {
-    std::error_code error;
-    if (std::filesystem::equivalent(output, trace, error)) {
-      throw InputError(output, "is a trace to draw, it must not be written over");
-    }
-  }
-}
-
 void CheckOutputs(const RenderOptions& options, const render::PictureOptions& picture) {
   if (!options.video.empty()) {
     render::CheckVideoName(options.video);
@@ -79,12 +67,12 @@ void CheckOutputs(const RenderOptions& options, const render::PictureOptions& pi
       throw InputError("--size",
                        "a video's width and height must be even, is '" + options.size + "'");
     }
-    CheckIsNoTrace(options.video, options);
+    CheckIsNoTrace(options.video, options.traces);
     CheckCanWrite(options.video);
   }
   if (!options.still.empty()) {
     render::CheckPngName(options.still);
-    CheckIsNoTrace(options.still, options);
+    CheckIsNoTrace(options.still, options.traces);
     CheckCanWrite(options.still);
   }
 }
@@ -99,27 +87,6 @@ bool ShowProgress(int done, int total) {
     PrintError("rendered {} of {} frames\n", done, total);
   }
   return interrupted == 0;
-}
-
-// Of a run that was killed there is no trace yet.
-void CheckIsNotOnlyAJournal(const std::string& path) {
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  std::error_code error;
-  if (std::filesystem::exists(path, error)) return;
-  if (!std::filesystem::exists(folder / kJournalName, error)) return;
-  throw InputError(path,
-                   "no such file, but the journal of a run that was cut off: first "
-                   "`sidestep salvage " +
-                       (folder.empty() ? "." : folder.string()) + "`");
-}
-
-std::vector<render::NamedRecording> ReadTraces(const std::vector<std::string>& paths) {
-  std::vector<render::NamedRecording> traces;
-  for (const std::string& path : paths) {
-    CheckIsNotOnlyAJournal(path);
-    traces.push_back({path, record::ReadRecording(path)});
-  }
-  return traces;
 }
 
 int Render(const RenderOptions& options) {

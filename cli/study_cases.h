@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "sidestep/bench/study.h"
+#include "sidestep/bench/run_row.h"
 #include "sidestep/bench/study_page.h"
 #include "sidestep/cli/data_paths.h"
 #include "sidestep/cli/wiring.h"

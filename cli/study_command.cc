@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "sidestep/bench/study.h"
+#include "sidestep/bench/run_row.h"
 #include "sidestep/bench/study_log.h"
 #include "sidestep/bench/study_page.h"
 #include "sidestep/bench/task_pool.h"
@@ -45,9 +45,7 @@ struct StudyOptions {
   std::string command;  // as it was typed
 };
 
-bool IsFailure(const bench::StudyRow& row) {
-  return row.outcome != ToString(bench::Outcome::kGoal);
-}
+bool IsFailure(const bench::RunRow& row) { return row.outcome != ToString(bench::Outcome::kGoal); }
 
 class Study {
  public:
@@ -62,12 +60,12 @@ class Study {
     bench::StudyLog log(out_ + "/study.jsonl", options_.resume);
     CheckResumed(log);
     if (options_.traces != "none") MakeOutFolder(out_ + "/traces", {});
-    const std::vector<bench::StudyRow> rows = RunCases(log);
-    WriteFile(out_ + "/study.csv", bench::StudyCsv(rows));
+    const std::vector<bench::RunRow> rows = RunCases(log);
+    WriteFile(out_ + "/study.csv", bench::RunsCsv(rows));
     WriteFile(out_ + "/study.md", bench::StudyPage(subject, rows, axes));
     Print("{}\nwritten {}/study.csv, {}/study.md\n", bench::OutcomeTable(rows, axes), out_, out_);
     PrintFailures(rows);
-    const bool all_whole = std::none_of(rows.begin(), rows.end(), [](const bench::StudyRow& row) {
+    const bool all_whole = std::none_of(rows.begin(), rows.end(), [](const bench::RunRow& row) {
       return row.outcome == bench::kFailed || row.outcome == ToString(bench::Outcome::kAborted);
     });
     return all_whole ? 0 : 1;
@@ -133,7 +131,7 @@ class Study {
       fail("holds an episode that is not asked for (" + episode + "): ask for it too, ");
     }
     ForAll([&](std::size_t i) {
-      const bench::StudyRow* const row = log.Find(cases_[i]);
+      const bench::RunRow* const row = log.Find(cases_[i]);
       if (row == nullptr) return;
       const bench::RunIdentity now = IdentityOf(cases_[i], Load(cases_[i]).scenario);
       const bench::RunIdentity& then = row->identity;
@@ -147,12 +145,12 @@ class Study {
     });
   }
 
-  std::vector<bench::StudyRow> RunCases(bench::StudyLog& log) const {
-    std::vector<bench::StudyRow> rows(cases_.size());
+  std::vector<bench::RunRow> RunCases(bench::StudyLog& log) const {
+    std::vector<bench::RunRow> rows(cases_.size());
     std::mutex finishing;
     std::size_t num_done = 0;
     ForAll([&](std::size_t i) {
-      const bench::StudyRow* const known = log.Find(cases_[i]);
+      const bench::RunRow* const known = log.Find(cases_[i]);
       rows[i] = known != nullptr && !LacksTrace(*known) ? *known : RunCase(cases_[i]);
       rows[i].command = RunCommandOf(options_.space.scenario, cases_[i]);
       const bool was_refused = rows[i].identity.build.empty();
@@ -169,45 +167,45 @@ class Study {
   }
 
   // A combination that is refused is a row too.
-  bench::StudyRow RunCase(const bench::Factors& factors) const {
+  bench::RunRow RunCase(const bench::Factors& factors) const {
     std::optional<Problem> problem;
     try {
       problem = Load(factors);
     } catch (const InputError& error) {
       return bench::FailedRow(factors, error.what());
     }
-    bench::StudyEpisode episode;
+    bench::RecordedRun episode;
     if (IsSearch(factors)) {
       episode.row =
-          bench::RunStudySearch(problem->scenario, problem->robot, options_.space.search, factors);
+          bench::RunSearchRow(problem->scenario, problem->robot, options_.space.search, factors);
     } else {
-      episode = bench::RunStudyEpisode(problem->scenario, problem->robot, SimulatedWorlds(paths_),
-                                       factors);
+      episode =
+          bench::RunEpisodeRow(problem->scenario, problem->robot, SimulatedWorlds(paths_), factors);
     }
     episode.row.identity = IdentityOf(factors, problem->scenario);
     KeepTrace(episode);
     return std::move(episode.row);
   }
 
-  bool WantsTrace(const bench::StudyRow& row) const {
+  bool WantsTrace(const bench::RunRow& row) const {
     return options_.traces == "all" || (options_.traces == "failures" && IsFailure(row));
   }
-  std::string TraceOf(const bench::StudyRow& row) const {
+  std::string TraceOf(const bench::RunRow& row) const {
     return "traces/" + bench::RunId(row.identity) + ".h5";
   }
-  bool LacksTrace(const bench::StudyRow& row) const {
+  bool LacksTrace(const bench::RunRow& row) const {
     return WantsTrace(row) && !IsSearch(row.factors) &&
            !std::filesystem::exists(out_ + "/" + TraceOf(row));
   }
-  void KeepTrace(bench::StudyEpisode& episode) const {
+  void KeepTrace(bench::RecordedRun& episode) const {
     if (!episode.recording || !WantsTrace(episode.row)) return;
     AddProvenance(episode.row.identity, *episode.recording);
     record::WriteRecording(*episode.recording, out_ + "/" + TraceOf(episode.row));
   }
 
-  void PrintFailures(const std::vector<bench::StudyRow>& rows) const {
+  void PrintFailures(const std::vector<bench::RunRow>& rows) const {
     std::size_t count = 0;
-    for (const bench::StudyRow& row : rows) {
+    for (const bench::RunRow& row : rows) {
       if (!IsFailure(row) || row.command.empty()) continue;
       if (count == 0) Print("run again what did not reach the goal, e.g.\n");
       if (++count <= kFailuresShown) Print("  {}\n", row.command);

@@ -173,11 +173,11 @@ class Validation {
 
   int RunAll() const {
     const OutFolder out(Folder(), {std::begin(kFiles), std::end(kFiles)});
-    const std::map<std::string, bench::StudyRow> before = RowsBefore(out.path());
+    const std::map<std::string, bench::RunRow> before = RowsBefore(out.path());
     const StopSignals signals;
     std::optional<double> memory_growth;
-    const std::vector<bench::StudyRow> rows = RunCases(before, signals, memory_growth);
-    const auto failed = std::count_if(rows.begin(), rows.end(), [](const bench::StudyRow& row) {
+    const std::vector<bench::RunRow> rows = RunCases(before, signals, memory_growth);
+    const auto failed = std::count_if(rows.begin(), rows.end(), [](const bench::RunRow& row) {
       return row.outcome == bench::kFailed;
     });
     const std::size_t missing = CountMissing(rows);
@@ -221,9 +221,9 @@ class Validation {
             Subject()};
   }
 
-  std::size_t CountMissing(const std::vector<bench::StudyRow>& rows) const {
+  std::size_t CountMissing(const std::vector<bench::RunRow>& rows) const {
     std::set<std::string> run;
-    for (const bench::StudyRow& row : rows) run.insert(row.factors.at("case"));
+    for (const bench::RunRow& row : rows) run.insert(row.factors.at("case"));
     const auto is_missing = [&](const auto& one) { return !run.contains(NameOf(one)); };
     return static_cast<std::size_t>(std::count_if(cases_.begin(), cases_.end(), is_missing));
   }
@@ -231,8 +231,8 @@ class Validation {
   std::string Subject() const { return bench::RunId(Identify(subject_.scenario, paths_)); }
 
   // Of a report that is there already, by the names of their cases: they are not run again.
-  std::map<std::string, bench::StudyRow> RowsBefore(const std::string& out) const {
-    std::map<std::string, bench::StudyRow> rows;
+  std::map<std::string, bench::RunRow> RowsBefore(const std::string& out) const {
+    std::map<std::string, bench::RunRow> rows;
     const std::string table = out + "/validation.csv", report = out + "/validation.json";
     if (!options_.resume || !std::filesystem::exists(table)) return rows;
     constexpr std::uintmax_t kMostBytes = 1 << 30;
@@ -242,7 +242,7 @@ class Validation {
                                        "' is of another scenario, robot, planner or program: "
                                        "what it found does not count here");
     }
-    for (bench::StudyRow& row : bench::ReadValidationCsv(table)) {
+    for (bench::RunRow& row : bench::ReadValidationCsv(table)) {
       if (row.outcome == bench::kFailed) continue;  // that is tried again
       const std::string name = row.factors.at("case");
       rows.emplace(name, std::move(row));
@@ -253,12 +253,12 @@ class Validation {
   // In the order of the cases, and what was there before and is no case now; those that were not
   // run to their end are left out.
   // @param memory_growth of the last nine tenths, if there is a soak.
-  std::vector<bench::StudyRow> RunCases(std::map<std::string, bench::StudyRow> before,
-                                        const StopSignals& signals,
-                                        std::optional<double>& memory_growth) const {
+  std::vector<bench::RunRow> RunCases(std::map<std::string, bench::RunRow> before,
+                                      const StopSignals& signals,
+                                      std::optional<double>& memory_growth) const {
     const int count = static_cast<int>(cases_.size());
     double memory_at_first = 0;
-    std::vector<std::optional<bench::StudyRow>> done(cases_.size());
+    std::vector<std::optional<bench::RunRow>> done(cases_.size());
     std::mutex telling;
     int num_done = 0, told = 0;
     for (std::size_t i = 0; i < cases_.size(); ++i) {
@@ -272,7 +272,7 @@ class Validation {
     bench::RunTasks(count, options_.jobs, [&](int i) {
       if (signals.count() > 0 || done[static_cast<std::size_t>(i)]) return;
       const bench::ValidationCase& one = cases_[static_cast<std::size_t>(i)];
-      bench::StudyRow row =
+      bench::RunRow row =
           RunValidationCase(one, subject_, worlds_, [&] { return signals.first(); }).row;
       if (signals.count() > 0) return;
       row.command = ReplayOf(one);
@@ -287,8 +287,8 @@ class Validation {
     if (!options_.soak.empty() && memory_at_first > 0) {
       memory_growth = MostMemory() / memory_at_first - 1;
     }
-    std::vector<bench::StudyRow> rows;
-    for (std::optional<bench::StudyRow>& row : done) {
+    std::vector<bench::RunRow> rows;
+    for (std::optional<bench::RunRow>& row : done) {
       if (row) rows.push_back(std::move(*row));
     }
     for (auto& [name, row] : before) rows.push_back(std::move(row));

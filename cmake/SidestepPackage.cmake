@@ -69,6 +69,6 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "cmake, pkg-config, libassimp-dev, libavcodec-dev, libavformat-dev, libavutil-dev, libceres-dev, \
 libconsole-bridge-dev, libeigen3-dev, libfmt-dev, libhdf5-dev, libhwy-dev, libmujoco-dev, \
-libosmesa6-dev, libqhull-dev, libswscale-dev, libtbb-dev, libtinyxml2-dev, liburdfdom-dev, \
+libosmesa6-dev, libqhull-dev, libsqlite3-dev, libswscale-dev, libtbb-dev, libtinyxml2-dev, liburdfdom-dev, \
 libyaml-cpp-dev, nlohmann-json3-dev${vision_packages}")
 include(CPack)

@@ -13,9 +13,6 @@
 namespace sidestep::render {
 namespace {
 
-constexpr double kTrailStep_s = 0.01;
-constexpr double kPlanStep_s = 0.02;
-
 Eigen::Vector3d ToVector(const mjtNum* values) { return {values[0], values[1], values[2]}; }
 
 // A picture begins and ends so far from the camera, and MuJoCo draws none if it begins nowhere.

@@ -36,9 +36,13 @@ class TraceModel {
   /// Whether a geom belongs to the object that the recording calls by this name.
   bool BelongsTo(int geom, const std::string& object) const;
 
-  /// Where the tip of the arm was, every 10 ms from the start until `t` (3 x N, m).
+  static constexpr double kTrailStep_s = 0.01, kPlanStep_s = 0.02;
+
+  /// Where the tip of the arm was, every kTrailStep_s from the first control sample until `t`
+  /// (3 x N, m).
   Eigen::Matrix3Xd TipTrail(EpisodeTime t) const;
-  /// Where the tip will be from `t` to the plan's end, every 20 ms (3 x N, m); empty if it is over.
+  /// Where the tip will be from `t` to the plan's end, every kPlanStep_s, and at its end (3 x N, m);
+  /// empty if it is over.
   /// Leaves the model at another moment: call MoveTo again.
   Eigen::Matrix3Xd TipPlan(const CycleRecord& cycle, EpisodeTime t);
 

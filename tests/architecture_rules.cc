@@ -335,7 +335,7 @@ const std::vector<ModuleRule>& ModuleRules() {
        {"nlohmann/", "sqlite3.h", "benchmark/", "hwy/", "itk", "fmt/"}},
       {"render",
        {"core", "record", "robot", "scenarios", "sim"},
-       {"mujoco/", "GL/", "libavcodec/", "libavformat/", "libavutil/", "libswscale/"}},
+       {"mujoco/", "GL/", "libavcodec/", "libavformat/", "libavutil/", "libswscale/", "nlohmann/"}},
       {"import",
        {"core", "robot", "sdf", "scenarios"},
        {"urdf_parser/", "urdf_model/", "console_bridge/", "assimp/", "libqhull_r/", "fmt/",

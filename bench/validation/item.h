@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sidestep/bench/episode.h"
-#include "sidestep/bench/study.h"
+#include "sidestep/bench/run_row.h"
 #include "sidestep/bench/validation/validation_case.h"
 #include "sidestep/robot/robot_model.h"
 #include "sidestep/scenarios/scenario.h"
@@ -44,7 +44,7 @@ struct ItemFinding {
 /// What all items judge by: one row an episode, whose metrics are all facts.
 struct Evidence {
   const scenarios::Scenario& scenario;  ///< as asked for
-  const std::vector<StudyRow>& rows;
+  const std::vector<RunRow>& rows;
   /// How much more memory the program took at the end of a soak than after its first tenth, as a
   /// share; none: there was no soak.
   std::optional<double> memory_growth = {};

@@ -40,9 +40,9 @@ constexpr const char* kNotCertified =
     "robot's own monitoring conforms with no safety norm. The external activation device is no "
     "emergency stop. Nobody is within reach of the arm, ever.";
 
-const StudyRow* RowOf(const std::string& name, const std::vector<StudyRow>& rows) {
+const RunRow* RowOf(const std::string& name, const std::vector<RunRow>& rows) {
   const auto found = std::find_if(rows.begin(), rows.end(),
-                                  [&](const StudyRow& row) { return NameOf(row) == name; });
+                                  [&](const RunRow& row) { return NameOf(row) == name; });
   return found == rows.end() ? nullptr : &*found;
 }
 
@@ -64,7 +64,7 @@ std::string ItemTable(const std::vector<JudgedItem>& items) {
   return text;
 }
 
-std::string WorstCases(const std::vector<JudgedItem>& items, const std::vector<StudyRow>& rows) {
+std::string WorstCases(const std::vector<JudgedItem>& items, const std::vector<RunRow>& rows) {
   std::string text;
   for (const auto& [item, finding] : items) {
     if (finding.worst.empty()) continue;
@@ -72,16 +72,16 @@ std::string WorstCases(const std::vector<JudgedItem>& items, const std::vector<S
     text += fmt::format("\n**{}. {}**, {}\n\n", item.number, item.name, what);
     for (const NamedCase& one : finding.worst) {
       text += fmt::format("- `{}`: {}\n", one.name, TableCell(one.what));
-      const StudyRow* const row = RowOf(one.name, rows);
+      const RunRow* const row = RowOf(one.name, rows);
       if (row != nullptr) text += fmt::format("\n      {}\n\n", row->command);
     }
   }
   return text;
 }
 
-std::string FailedCases(const std::vector<StudyRow>& rows) {
+std::string FailedCases(const std::vector<RunRow>& rows) {
   std::string text;
-  for (const StudyRow& row : rows) {
+  for (const RunRow& row : rows) {
     if (row.outcome == kFailed)
       text += fmt::format("- `{}`: {}\n", NameOf(row), TableCell(row.error));
   }
@@ -105,7 +105,7 @@ std::string VerdictLine(const std::vector<JudgedItem>& items) {
 }
 
 std::string ValidationPage(const ValidationTitle& title, const std::vector<JudgedItem>& items,
-                           const std::vector<StudyRow>& rows) {
+                           const std::vector<RunRow>& rows) {
   std::string text = fmt::format(
       "# Validation of {} in {}\n\n**{}**\n\n{}\n\n- {} of {} episodes, made by\n\n"
       "      {}\n\n- seen by: {}\n\n## Items\n\n",
@@ -131,7 +131,7 @@ std::string ValidationPage(const ValidationTitle& title, const std::vector<Judge
 }
 
 std::string ValidationJson(const ValidationTitle& title, const std::vector<JudgedItem>& items,
-                           const std::vector<StudyRow>& rows) {
+                           const std::vector<RunRow>& rows) {
   Json json;
   json["format"] = "sidestep-validation-1";
   json["planner"] = title.planner;
@@ -146,7 +146,7 @@ std::string ValidationJson(const ValidationTitle& title, const std::vector<Judge
   for (const auto& [item, finding] : items) {
     Json worst = Json::array();
     for (const NamedCase& one : finding.worst) {
-      const StudyRow* const row = RowOf(one.name, rows);
+      const RunRow* const row = RowOf(one.name, rows);
       worst.push_back({{"case", one.name},
                        {"what", one.what},
                        {"command", row == nullptr ? Json(nullptr) : Json(row->command)}});
@@ -165,10 +165,10 @@ std::string ValidationJson(const ValidationTitle& title, const std::vector<Judge
   return JsonText(json);
 }
 
-std::string ValidationCsv(const std::vector<StudyRow>& rows) {
+std::string ValidationCsv(const std::vector<RunRow>& rows) {
   if (rows.empty()) return "";
   std::set<std::string> facts;
-  for (const StudyRow& row : rows) {
+  for (const RunRow& row : rows) {
     for (const auto& [fact, value] : row.metrics) facts.insert(fact);
   }
   std::vector<std::string> columns;
@@ -177,7 +177,7 @@ std::string ValidationCsv(const std::vector<StudyRow>& rows) {
   columns.insert(columns.end(), facts.begin(), facts.end());
   columns.emplace_back("command");
   CsvWriter csv(columns);
-  for (const StudyRow& row : rows) {
+  for (const RunRow& row : rows) {
     std::vector<std::string> fields;
     for (const auto& [factor, value] : row.factors) fields.push_back(value);
     fields.insert(fields.end(), {row.outcome, row.error});
@@ -191,16 +191,16 @@ std::string ValidationCsv(const std::vector<StudyRow>& rows) {
   return csv.text();
 }
 
-std::vector<StudyRow> ReadValidationCsv(const std::string& path) {
+std::vector<RunRow> ReadValidationCsv(const std::string& path) {
   const CsvFile file = ReadCsv(path);
   const Factors factors = FactorsOf(ValidationCase());
   for (const char* const column : {"case", "outcome", "error", "command"}) {
     if (std::find(file.columns.begin(), file.columns.end(), column) != file.columns.end()) continue;
     throw InputError(path, 1, "header", std::string("has no column '") + column + "'");
   }
-  std::vector<StudyRow> rows;
+  std::vector<RunRow> rows;
   for (const CsvRow& line : file.rows) {
-    StudyRow& row = rows.emplace_back();
+    RunRow& row = rows.emplace_back();
     for (std::size_t i = 0; i < file.columns.size(); ++i) {
       const std::string &column = file.columns[i], &field = line.fields[i];
       if (factors.contains(column)) {

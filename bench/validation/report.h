@@ -31,13 +31,13 @@ const char* NotCertified();
 
 /// A page in Markdown. Rows' commands run their cases again.
 std::string ValidationPage(const ValidationTitle& title, const std::vector<JudgedItem>& items,
-                           const std::vector<StudyRow>& rows);
+                           const std::vector<RunRow>& rows);
 /// The same for programs (docs/validation.md).
 std::string ValidationJson(const ValidationTitle& title, const std::vector<JudgedItem>& items,
-                           const std::vector<StudyRow>& rows);
+                           const std::vector<RunRow>& rows);
 /// All rows, with a column for each factor and each fact.
-std::string ValidationCsv(const std::vector<StudyRow>& rows);
+std::string ValidationCsv(const std::vector<RunRow>& rows);
 /// The rows of such a file. @throws InputError FILE:LINE: WHY.
-std::vector<StudyRow> ReadValidationCsv(const std::string& path);
+std::vector<RunRow> ReadValidationCsv(const std::string& path);
 
 }  // namespace sidestep::bench

@@ -19,11 +19,11 @@ constexpr std::size_t kNamed = 3;
 
 }  // namespace
 
-std::string NameOf(const StudyRow& row) { return row.factors.at("case"); }
+std::string NameOf(const RunRow& row) { return row.factors.at("case"); }
 
-bool IsOfGroup(const StudyRow& row, const char* group) { return row.factors.at("group") == group; }
+bool IsOfGroup(const RunRow& row, const char* group) { return row.factors.at("group") == group; }
 
-bool IsWithinEnvelope(const StudyRow& row) {
+bool IsWithinEnvelope(const RunRow& row) {
   using namespace validation_group;
   for (const char* const group : {kEnvelope, kPerception, kTiming, kSoak}) {
     if (IsOfGroup(row, group)) return true;
@@ -34,7 +34,7 @@ bool IsWithinEnvelope(const StudyRow& row) {
 std::vector<Told> LargestFirst(const Evidence& evidence, const std::string& fact,
                                const RowFilter& filter) {
   std::vector<Told> told;
-  for (const StudyRow& row : evidence.rows) {
+  for (const RunRow& row : evidence.rows) {
     const auto found = row.metrics.find(fact);
     if (found == row.metrics.end() || std::isnan(found->second) || !filter(row)) continue;
     told.push_back({&row, found->second});

@@ -12,17 +12,17 @@
 namespace sidestep::bench {
 
 /// The name of a row's case.
-std::string NameOf(const StudyRow& row);
+std::string NameOf(const RunRow& row);
 
 /// Whether a row's obstacles keep to what is declared, nothing fails, and the arm is supervised.
-bool IsWithinEnvelope(const StudyRow& row);
-bool IsOfGroup(const StudyRow& row, const char* group);
+bool IsWithinEnvelope(const RunRow& row);
+bool IsOfGroup(const RunRow& row, const char* group);
 
-using RowFilter = std::function<bool(const StudyRow&)>;
+using RowFilter = std::function<bool(const RunRow&)>;
 
 /// A row and what it tells of one fact.
 struct Told {
-  const StudyRow* row;
+  const RunRow* row;
   double value;
 };
 /// Of the rows that have it, those with the largest value first.

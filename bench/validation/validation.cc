@@ -138,7 +138,7 @@ ValidationEpisode RunValidationCase(const ValidationCase& one, const ValidationS
       episode.result.outcome = Judge(episode.result.recording, /*reached=*/false);
       episode.result.reason = kGaveUp;
     }
-    StudyRow& row = episode.row;
+    RunRow& row = episode.row;
     row.factors = FactorsOf(one);
     row.outcome = ToString(episode.result.outcome);
     row.error = episode.result.reason;

@@ -32,7 +32,7 @@ scenarios::Scenario ScenarioOf(const ValidationCase& one, const ValidationSubjec
 
 /// Runs a case. One that cannot be run is a row that failed. @param why_stop as in EpisodeOptions.
 struct ValidationEpisode {
-  StudyRow row;
+  RunRow row;
   EpisodeResult result;  ///< empty if it failed
 };
 ValidationEpisode RunValidationCase(const ValidationCase& one, const ValidationSubject& subject,

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "sidestep/bench/study.h"
+#include "sidestep/bench/run_row.h"
 
 namespace sidestep::bench {
 

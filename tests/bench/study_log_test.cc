@@ -16,8 +16,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-StudyRow Row(const std::string& seed) {
-  StudyRow row;
+RunRow Row(const std::string& seed) {
+  RunRow row;
   row.factors = {{"behaviour", "stop"}, {"seed", seed}};
   row.drawn = {{"delay_s", 0.1 + 1e-17}};
   row.identity = {"scene", "models", "build", "search 40"};
@@ -50,7 +50,7 @@ TEST_F(StudyLogTest, GivesBackTheRowsThatItWasGiven) {
     log.Append(Row("2"));
   }
   const StudyLog log(path_, /*resume=*/true);
-  const StudyRow* const row = log.Find(Row("2").factors);
+  const RunRow* const row = log.Find(Row("2").factors);
   ASSERT_NE(row, nullptr);
   EXPECT_EQ(row->outcome, "failed");
   EXPECT_EQ(row->error, Row("2").error);
@@ -108,7 +108,7 @@ TEST_F(StudyLogTest, IsRefusedWhileAnotherStudyHasIt) {
 }
 
 TEST_F(StudyLogTest, TakesTextThatIsNotUtf8) {
-  StudyRow row = Row("1");
+  RunRow row = Row("1");
   row.error = "caf\xe9.yaml: no such file";
   { StudyLog(path_, /*resume=*/false).Append(row); }
   const StudyLog log(path_, /*resume=*/true);
@@ -127,7 +127,7 @@ TEST_F(StudyLogTest, RefusesWhatIsNoLog) {
 }
 
 TEST_F(StudyLogTest, RefusesAnOutcomeThatIsNone) {
-  StudyRow row = Row("2");
+  RunRow row = Row("2");
   row.outcome = "great";
   {
     StudyLog log(path_, /*resume=*/false);

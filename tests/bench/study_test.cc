@@ -1,5 +1,3 @@
-#include "sidestep/bench/study.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +9,7 @@
 #include "sidestep/bench/free_path_search.h"
 #include "sidestep/bench/paired_table.h"
 #include "sidestep/bench/resolve.h"
+#include "sidestep/bench/run_row.h"
 #include "sidestep/bench/study_page.h"
 
 namespace sidestep::bench {
@@ -26,16 +25,15 @@ robot::RobotModel RobotOf(const scenarios::Scenario& scenario) {
   return robot::RobotModel::Load(SIDESTEP_SOURCE_DIR "/models", scenario.robot, scenario.X_WB);
 }
 
-StudyRow Row(const std::string& behaviour, const std::string& predictor,
-             const std::string& outcome) {
-  StudyRow row;
+RunRow Row(const std::string& behaviour, const std::string& predictor, const std::string& outcome) {
+  RunRow row;
   row.factors = {{"behaviour", behaviour}, {"predictor", predictor}};
   row.outcome = outcome;
   return row;
 }
 
 TEST(OutcomeTable, CountsGoalsAndSaysHowTheOthersEnded) {
-  const std::vector<StudyRow> rows = {
+  const std::vector<RunRow> rows = {
       Row("stop", "two_frame", "goal"),      Row("stop", "two_frame", "collision"),
       Row("stop", "kalman_cv", "goal"),      Row("circle", "two_frame", "failed"),
       Row("circle", "kalman_cv", "timeout"),
@@ -52,7 +50,7 @@ TEST(OutcomeTable, CountsGoalsAndSaysHowTheOthersEnded) {
 }
 
 TEST(OutcomeTable, NeedsNoAxes) {
-  const std::vector<StudyRow> rows = {Row("stop", "imm", "goal"), Row("turn", "imm", "timeout")};
+  const std::vector<RunRow> rows = {Row("stop", "imm", "goal"), Row("turn", "imm", "timeout")};
   EXPECT_EQ(OutcomeTable(rows, {"", ""}),
             "|  | episodes |\n|---|---|\n| all | 1/2 |\n| timeout | 1 |\n");
   EXPECT_EQ(OutcomeTable(rows, {"behaviour", ""}),
@@ -61,14 +59,14 @@ TEST(OutcomeTable, NeedsNoAxes) {
 }
 
 TEST(OutcomeTable, HoldsNamesThatLookLikeMarkdown) {
-  const std::vector<StudyRow> rows = {Row("a|b\nc", "imm", "goal")};
+  const std::vector<RunRow> rows = {Row("a|b\nc", "imm", "goal")};
   EXPECT_EQ(OutcomeTable(rows, {"behaviour", "predictor"}),
             "| behaviour | imm |\n|---|---|\n| a\\|b c | 1/1 |\n| all | 1/1 |\n");
 }
 
 // An episode of one seed at one pace.
-StudyRow Episode(const std::string& pace, int seed, bool goal, double clearance_m, double time_s) {
-  StudyRow row;
+RunRow Episode(const std::string& pace, int seed, bool goal, double clearance_m, double time_s) {
+  RunRow row;
   row.factors = {{"pace", pace}, {"behaviour", "stop"}, {"seed", std::to_string(seed)}};
   row.outcome = goal ? "goal" : "collision";
   row.metrics = {{"min_clearance_m", clearance_m}, {"time_to_goal_s", goal ? time_s : NAN}};
@@ -76,7 +74,7 @@ StudyRow Episode(const std::string& pace, int seed, bool goal, double clearance_
 }
 
 TEST(PairedTable, SetsTheSameEpisodesBesideEachOther) {
-  std::vector<StudyRow> rows;
+  std::vector<RunRow> rows;
   for (int seed = 1; seed <= 30; ++seed) {
     // Each has a clearance of its own, and 20 mm more where it is fast; every third then arrives.
     rows.push_back(Episode("slow", seed, seed % 3 != 0, 0.01 * seed, 3));
@@ -96,7 +94,7 @@ TEST(PairedTable, SetsTheSameEpisodesBesideEachOther) {
 }
 
 TEST(PairedTable, DrawsSeedsAndNotEpisodes) {
-  std::vector<StudyRow> rows;
+  std::vector<RunRow> rows;
   for (const char* const behaviour : {"stop", "turn", "park", "leave"}) {  // all alike
     for (int seed = 1; seed <= 12; ++seed) {
       for (const char* const pace : {"slow", "fast"}) {
@@ -122,7 +120,7 @@ TEST(PairedTable, IsEmptyWhereNothingVariesAcross) {
 }
 
 TEST(StudyPage, SaysWhatIsVariedAndWhatIsNot) {
-  std::vector<StudyRow> rows;
+  std::vector<RunRow> rows;
   for (int seed = 1; seed <= 30; ++seed) {
     rows.push_back(Row("stop", "imm", "goal"));
     rows.back().factors["seed"] = std::to_string(seed);
@@ -135,13 +133,13 @@ TEST(StudyPage, SaysWhatIsVariedAndWhatIsNot) {
   EXPECT_THAT(page, HasSubstr("| all | 30/30 |\n"));
 }
 
-TEST(StudyCsv, HoldsWhatWasDrawnAndHowToRunItAgain) {
-  std::vector<StudyRow> rows = {Row("stop", "imm", "goal"), Row("turn", "imm", "failed")};
+TEST(RunsCsv, HoldsWhatWasDrawnAndHowToRunItAgain) {
+  std::vector<RunRow> rows = {Row("stop", "imm", "goal"), Row("turn", "imm", "failed")};
   rows[0].drawn = {{"speed_factor", 0.1}};
   rows[0].identity = {"s", "m", "b", ""};
   rows[0].trace = "traces/x.h5";
   rows[0].command = "sidestep run a --seed 1";
-  const std::string csv = StudyCsv(rows);
+  const std::string csv = RunsCsv(rows);
   EXPECT_THAT(csv, HasSubstr("behaviour,predictor,drawn.speed_factor,outcome,error,"));
   EXPECT_THAT(csv, HasSubstr(",run,trace,command\nstop,imm,0.1,goal,,"));
   EXPECT_THAT(csv,
@@ -150,26 +148,24 @@ TEST(StudyCsv, HoldsWhatWasDrawnAndHowToRunItAgain) {
   EXPECT_THAT(csv, ::testing::EndsWith(",,,\n"));
 }
 
-TEST(StudyCsv, HoldsEveryRowAlsoThoseThatFailed) {
-  std::vector<StudyRow> rows = {Row("stop", "two_frame", "goal"),
-                                Row("stop", "two_frame", "failed")};
+TEST(RunsCsv, HoldsEveryRowAlsoThoseThatFailed) {
+  std::vector<RunRow> rows = {Row("stop", "two_frame", "goal"), Row("stop", "two_frame", "failed")};
   rows[0].metrics = {{"min_clearance_m", 0.125}, {"first_contact_s", NAN}};
   rows[1].error = "a \"word\", quoted";
-  const std::string csv = StudyCsv(rows);
+  const std::string csv = RunsCsv(rows);
   EXPECT_THAT(csv, HasSubstr("behaviour,predictor,outcome,error,first_contact_s,min_clearance_m,"));
   EXPECT_THAT(csv, HasSubstr("\nstop,two_frame,goal,,,0.125,"));
   EXPECT_THAT(csv, HasSubstr("\nstop,two_frame,failed,\"a \"\"word\"\", quoted\","));
 }
 
-TEST(StudyEpisode, ThatThrowsIsARowThatSaysWhy) {
+TEST(RecordedRun, ThatThrowsIsARowThatSaysWhy) {
   const scenarios::Scenario scenario = Load("hsr_walkway");
   const WorldFactory broken = [](const scenarios::Scenario&,
                                  const robot::RobotModel&) -> EpisodeWorld {
     throw std::runtime_error("no world");
   };
-  const StudyEpisode episode =
-      RunStudyEpisode(scenario, RobotOf(scenario), broken, {{"seed", "1"}});
-  const StudyRow& row = episode.row;
+  const RecordedRun episode = RunEpisodeRow(scenario, RobotOf(scenario), broken, {{"seed", "1"}});
+  const RunRow& row = episode.row;
   EXPECT_FALSE(episode.recording);
   EXPECT_EQ(row.outcome, "failed");
   EXPECT_EQ(row.error, "no world");

@@ -226,14 +226,14 @@ struct Row {
 };
 
 ItemFinding Judge(int number, const std::vector<Row>& told) {
-  std::vector<StudyRow> rows;
+  std::vector<RunRow> rows;
   int draw = 0;
   for (const Row& one : told) {
     ValidationCase as_case;
     as_case.group = one.group;
     as_case.behaviour = "cross";
     as_case.draw = ++draw;
-    StudyRow& row = rows.emplace_back();
+    RunRow& row = rows.emplace_back();
     row.factors = FactorsOf(as_case);
     for (const auto& [factor, value] : one.factors) row.factors[factor] = value;
     row.metrics = one.facts;
@@ -412,12 +412,12 @@ TEST(ValidationItems, AreNumberedFromOneOn) {
 
 TEST(ValidationItems, ThatHoldSoFarDoNotPassBeforeTheEnd) {
   const scenarios::Scenario scenario = TheTable().scenario;
-  StudyRow row;
+  RunRow row;
   ValidationCase one;
   one.group = kEnvelope;
   row.factors = FactorsOf(one);
   row.metrics = {{"tool_speed_m_s", 0.1}, {"joint_excess_rad", 0.0}};
-  const std::vector<StudyRow> rows = {row};
+  const std::vector<RunRow> rows = {row};
   for (const JudgedItem& judged : JudgeItems({scenario, rows}, /*is_whole=*/false)) {
     EXPECT_NE(judged.finding.verdict, kPass) << judged.item.number;
     const bool fails = judged.finding.verdict == kFail;
@@ -453,7 +453,7 @@ TEST(ValidationItems, AreInTheDocumentation) {
 
 TEST(ValidationReport, TellsOfEachFailureHowToRunItAgain) {
   const scenarios::Scenario scenario = TheTable().scenario;
-  StudyRow row;
+  RunRow row;
   ValidationCase one;
   one.group = kEnvelope;
   one.behaviour = "cross";
@@ -461,7 +461,7 @@ TEST(ValidationReport, TellsOfEachFailureHowToRunItAgain) {
   row.metrics = {{"tool_speed_m_s", 0.7}};
   row.outcome = "goal";
   row.command = "sidestep validate gpmp --only this";
-  const std::vector<StudyRow> rows = {row};
+  const std::vector<RunRow> rows = {row};
   const std::vector<JudgedItem> items = JudgeItems({scenario, rows}, true);
   const ValidationTitle title = {"gpmp", "table", "tags", "sidestep validate gpmp", 1, {}};
   EXPECT_TRUE(HasFailed(items));
@@ -479,9 +479,9 @@ TEST(ValidationReport, TellsOfEachFailureHowToRunItAgain) {
 }
 
 TEST(ValidationReport, IsReadBackToTheBitToBeGoneOnWith) {
-  std::vector<StudyRow> rows;
+  std::vector<RunRow> rows;
   for (const ValidationCase& one : SoakCases(TheTable().scenario, 501, 503)) {
-    StudyRow& row = rows.emplace_back();
+    RunRow& row = rows.emplace_back();
     row.factors = FactorsOf(one);
     row.outcome = "collision";
     row.error = "a, \"b\"";
@@ -492,7 +492,7 @@ TEST(ValidationReport, IsReadBackToTheBitToBeGoneOnWith) {
   const TemporaryFolder folder;
   const std::string path = (folder.path() / "validation.csv").string();
   WriteFile(path, ValidationCsv(rows));
-  const std::vector<StudyRow> read = ReadValidationCsv(path);
+  const std::vector<RunRow> read = ReadValidationCsv(path);
   ASSERT_EQ(read.size(), rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     EXPECT_EQ(read[i].factors, rows[i].factors);

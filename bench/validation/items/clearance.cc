@@ -49,7 +49,7 @@ Facts Measure(const ValidationRun& run) {
           {"sure_lack_of_clearance_m", -sure_m}};
 }
 
-bool IsJudged(const StudyRow& row) {
+bool IsJudged(const RunRow& row) {
   return IsOfGroup(row, validation_group::kEnvelope) || IsOfGroup(row, validation_group::kSoak);
 }
 

@@ -41,7 +41,7 @@ Facts Measure(const ValidationRun& run) {
 }
 
 ItemFinding Judge(const Evidence& evidence) {
-  const auto is_beyond = [](const StudyRow& row) {
+  const auto is_beyond = [](const RunRow& row) {
     return IsOfGroup(row, validation_group::kSudden) || IsOfGroup(row, validation_group::kFast);
   };
   const std::vector<Told> within = LargestFirst(evidence, "contact_in_motion", IsWithinEnvelope);

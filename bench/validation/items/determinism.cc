@@ -28,7 +28,7 @@ Facts Measure(const ValidationRun& run) {
 }
 
 // What a repetition repeats.
-std::string Same(const StudyRow& row) {
+std::string Same(const RunRow& row) {
   Factors factors = row.factors;
   factors.erase("group");
   factors.erase("case");
@@ -39,14 +39,14 @@ std::string Same(const StudyRow& row) {
 
 ItemFinding Judge(const Evidence& evidence) {
   std::map<std::string, double> hashes;
-  for (const StudyRow& row : evidence.rows) {
+  for (const RunRow& row : evidence.rows) {
     if (!IsOfGroup(row, validation_group::kEnvelope)) continue;
     const auto hash = row.metrics.find("commands_hash");
     if (hash != row.metrics.end()) hashes[Same(row)] = hash->second;
   }
   ItemFinding finding{ItemVerdict::kPass, "", {}};
   int repeated = 0, equal = 0;
-  for (const StudyRow& row : evidence.rows) {
+  for (const RunRow& row : evidence.rows) {
     const auto hash = row.metrics.find("commands_hash");
     if (!IsOfGroup(row, validation_group::kRepeat) || hash == row.metrics.end()) continue;
     const auto first = hashes.find(Same(row));

@@ -33,9 +33,7 @@ Facts Measure(const ValidationRun& run) {
 }
 
 ItemFinding Judge(const Evidence& evidence) {
-  const auto is_fault = [](const StudyRow& row) {
-    return IsOfGroup(row, validation_group::kFault);
-  };
+  const auto is_fault = [](const RunRow& row) { return IsOfGroup(row, validation_group::kFault); };
   const std::vector<Told> answered = LargestFirst(evidence, "fault_answered", is_fault);
   const std::vector<Told> rests = LargestFirst(evidence, "fault_rests", is_fault);
   if (answered.empty()) return NothingRun("no episode was run");

@@ -55,7 +55,7 @@ ItemFinding Judge(const Evidence& evidence) {
     return NothingRun(
         "no camera in this scenario: errors of a noise model are as they are said to be");
   }
-  const auto is_nominal = [](const StudyRow& row) {
+  const auto is_nominal = [](const RunRow& row) {
     return IsOfGroup(row, validation_group::kEnvelope);
   };
   const double seen = SumOf(LargestFirst(evidence, "poses_seen", is_nominal));

@@ -26,7 +26,7 @@ Facts Measure(const ValidationRun& run) {
 }
 
 // Where packets are lost, the robot makes up what is missing, and that is not what was sent.
-bool IsJudged(const StudyRow& row) {
+bool IsJudged(const RunRow& row) {
   return !IsOfGroup(row, validation_group::kPrediction) &&
          !IsOfGroup(row, validation_group::kFault) &&
          !row.factors.at("timing").starts_with("loss_");

@@ -21,12 +21,12 @@ Facts Measure(const ValidationRun& run) {
 }
 
 struct Pair {
-  const StudyRow *with = nullptr, *without = nullptr;
+  const RunRow *with = nullptr, *without = nullptr;
 };
 
 std::map<std::string, Pair> PairsOf(const Evidence& evidence) {
   std::map<std::string, Pair> pairs;
-  for (const StudyRow& row : evidence.rows) {
+  for (const RunRow& row : evidence.rows) {
     if (!IsOfGroup(row, validation_group::kPrediction) || row.metrics.empty()) continue;
     const std::string same = row.factors.at("behaviour") + " " + row.factors.at("speed_m_s") + " " +
                              row.factors.at("draw");
@@ -43,7 +43,7 @@ ItemFinding Judge(const Evidence& evidence) {
   for (const auto& [same, pair] : PairsOf(evidence)) {
     if (pair.with == nullptr || pair.without == nullptr) continue;
     ++num_pairs;
-    const auto fact = [](const StudyRow* row, const char* name) { return row->metrics.at(name); };
+    const auto fact = [](const RunRow* row, const char* name) { return row->metrics.at(name); };
     const bool with = fact(pair.with, "alone_free") == 1;
     const bool without = fact(pair.without, "alone_free") == 1;
     free_with += with ? 1 : 0;

@@ -36,7 +36,7 @@ Facts Measure(const ValidationRun& run) {
 }
 
 ItemFinding Judge(const Evidence& evidence) {
-  const auto is_nominal = [](const StudyRow& row) {
+  const auto is_nominal = [](const RunRow& row) {
     return IsOfGroup(row, validation_group::kEnvelope);
   };
   const std::vector<Told> p50 = LargestFirst(evidence, "reaction_p50_s", is_nominal);

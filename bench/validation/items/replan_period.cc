@@ -31,10 +31,10 @@ Facts Measure(const ValidationRun& run) {
 }
 
 ItemFinding Judge(const Evidence& evidence) {
-  const auto is_nominal = [](const StudyRow& row) {
+  const auto is_nominal = [](const RunRow& row) {
     return IsOfGroup(row, validation_group::kEnvelope);
   };
-  const auto is_late = [](const StudyRow& row) {
+  const auto is_late = [](const RunRow& row) {
     return row.factors.at("timing").starts_with("planner_");
   };
   const std::vector<Told> periods = LargestFirst(evidence, "replan_periods_p99", is_nominal);

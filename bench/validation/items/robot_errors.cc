@@ -16,7 +16,7 @@ Facts Measure(const ValidationRun& run) {
   return {{"robot_errors", failed ? 1 : 0}};
 }
 
-bool IsNominal(const StudyRow& row) {
+bool IsNominal(const RunRow& row) {
   return IsOfGroup(row, validation_group::kEnvelope) || IsOfGroup(row, validation_group::kTiming);
 }
 

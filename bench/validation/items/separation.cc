@@ -81,7 +81,7 @@ Facts Measure(const ValidationRun& run) {
           {"separation_lack_m", deepest_m}};
 }
 
-bool IsJudged(const StudyRow& row) {
+bool IsJudged(const RunRow& row) {
   return IsOfGroup(row, validation_group::kEnvelope) || IsOfGroup(row, validation_group::kSoak);
 }
 

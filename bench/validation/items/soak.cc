@@ -12,11 +12,11 @@ constexpr double kMostGrowth = 0.01;
 constexpr std::size_t kLeastEpisodes = 2000;
 
 ItemFinding Judge(const Evidence& evidence) {
-  const auto is_soak = [](const StudyRow& row) { return IsOfGroup(row, validation_group::kSoak); };
+  const auto is_soak = [](const RunRow& row) { return IsOfGroup(row, validation_group::kSoak); };
   const std::vector<Told> touched = LargestFirst(evidence, "contact_in_motion", is_soak);
   if (touched.empty()) return NothingRun("--soak runs it, for an hour or so");
   int failed = 0;
-  for (const StudyRow& row : evidence.rows) failed += is_soak(row) && row.outcome == kFailed;
+  for (const RunRow& row : evidence.rows) failed += is_soak(row) && row.outcome == kFailed;
   ItemFinding finding;
   const double growth = evidence.memory_growth.value_or(0);
   const bool passes = SumOf(touched) == 0 && failed == 0 && growth <= kMostGrowth;

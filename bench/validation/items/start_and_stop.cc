@@ -39,7 +39,7 @@ Facts Measure(const ValidationRun& run) {
 }
 
 ItemFinding Judge(const Evidence& evidence) {
-  const auto is_whole = [](const StudyRow& row) {
+  const auto is_whole = [](const RunRow& row) {
     return IsWithinEnvelope(row) && row.metrics.count("end_share") > 0;
   };
   const std::vector<Told> starts = LargestFirst(evidence, "start_share", IsWithinEnvelope);

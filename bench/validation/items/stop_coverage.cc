@@ -30,7 +30,7 @@ Facts Measure(const ValidationRun& run) {
 }
 
 ItemFinding Judge(const Evidence& evidence) {
-  const RowFilter all = [](const StudyRow&) { return true; };
+  const RowFilter all = [](const RunRow&) { return true; };
   const std::vector<Told> without = LargestFirst(evidence, "ticks_without_stop", all);
   const std::vector<Told> times = LargestFirst(evidence, "stop_s", IsWithinEnvelope);
   const std::vector<Told> ways = LargestFirst(evidence, "stop_m", IsWithinEnvelope);

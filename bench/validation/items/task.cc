@@ -13,7 +13,7 @@ Facts Measure(const ValidationRun& run) {
 }
 
 ItemFinding Judge(const Evidence& evidence) {
-  const auto is_solvable = [](const StudyRow& row) {
+  const auto is_solvable = [](const RunRow& row) {
     const auto free = row.metrics.find("free_path");
     return IsWithinEnvelope(row) && free != row.metrics.end() && free->second == 1;
   };

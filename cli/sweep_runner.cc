@@ -1,0 +1,300 @@
+#include "sidestep/cli/sweep_runner.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "sidestep/bench/json_text.h"
+#include "sidestep/bench/process_pool.h"
+#include "sidestep/bench/sweep/merge.h"
+#include "sidestep/cli/build_id.h"
+#include "sidestep/cli/console.h"
+#include "sidestep/cli/out_folder.h"
+#include "sidestep/cli/provenance.h"
+#include "sidestep/cli/stop_signals.h"
+#include "sidestep/cli/study_cases.h"
+#include "sidestep/cli/sweep_progress.h"
+#include "sidestep/cli/versions.h"
+#include "sidestep/core/atomic_file.h"
+#include "sidestep/core/fingerprint.h"
+#include "sidestep/core/input_error.h"
+#include "sidestep/core/text_file.h"
+#include "sidestep/record/recording_file.h"
+#include "sidestep/scenarios/variations.h"
+
+namespace sidestep::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPlanFormat = "sidestep-plan-1";
+constexpr std::uintmax_t kMaxPlanBytes = 1 << 20;
+// Of an axis, that are resolved before the work: evenly chosen, the first and the last among them.
+constexpr std::size_t kMostChecked = 50;
+
+std::string CpuName() {
+  std::ifstream stream("/proc/cpuinfo");
+  for (std::string line; std::getline(stream, line);) {
+    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
+  }
+  return "";
+}
+
+// What may differ between machines that run one build.
+std::map<std::string, std::string> Machine() {
+  std::map<std::string, std::string> machine = Versions();
+  for (const char* const of_build : {"sidestep", "build_id", "build_type", "compiler"}) {
+    machine.erase(of_build);
+  }
+  std::array<char, 256> name{};
+  gethostname(name.data(), name.size() - 1);
+  machine["hostname"] = name.data();
+  machine["cpu"] = CpuName();
+  return machine;
+}
+
+}  // namespace
+
+SweepRunner::SweepRunner(const bench::SweepPlan& plan, std::string folder, std::string out,
+                         DataPaths paths)
+    : plan_(plan), folder_(std::move(folder)), out_(std::move(out)), paths_(std::move(paths)) {}
+
+std::string SweepRunner::ScenarioOf(const bench::PlannedRun& run) const {
+  const std::string& name = run.scenario;
+  const bool is_path = name.find('/') != std::string::npos || name.ends_with(".yaml");
+  if (!is_path || fs::path(name).is_absolute()) return name;
+  return (fs::path(folder_) / name).lexically_normal().string();
+}
+
+bench::Factors SweepRunner::AllFactorsOf(const bench::PlannedRun& run) const {
+  const scenarios::Settings& settings = plan_.sweep().settings;
+  bench::Factors all(settings.begin(), settings.end());
+  all.insert(run.factors.begin(), run.factors.end());
+  return all;
+}
+
+Problem SweepRunner::Load(const bench::PlannedRun& run) const {
+  bench::Factors all = AllFactorsOf(run);
+  all["seed"] = std::to_string(run.seed);
+  const std::string scenario = ScenarioOf(run);
+  // `./` for a file beside the sweep's, so that it is taken for a path.
+  return LoadCase(scenario.ends_with(".yaml") && scenario.find('/') == std::string::npos
+                      ? "./" + scenario
+                      : scenario,
+                  all, paths_);
+}
+
+std::string SweepRunner::CommandOf(const bench::PlannedRun& run) const {
+  return RunCommandOf(ScenarioOf(run), AllFactorsOf(run));
+}
+
+std::string SweepRunner::TraceOf(std::uint64_t key) const {
+  return "traces/" + bench::KeyText(key) + ".h5";
+}
+
+bool SweepRunner::WantsTrace(const std::string& outcome) const {
+  switch (plan_.sweep().traces) {
+    case bench::KeptTraces::kNone:
+      return false;
+    case bench::KeptTraces::kFailures:
+      return outcome != ToString(bench::Outcome::kGoal);
+    case bench::KeptTraces::kAll:
+      break;
+  }
+  return true;
+}
+
+SweepRunner::Checked SweepRunner::Check() const {
+  const bench::Sweep& sweep = plan_.sweep();
+  std::vector<bench::PlannedRun> asked;
+  const auto first = [&](const std::string& scenario) {
+    bench::PlannedRun run = plan_.At(0);
+    run.scenario = scenario;
+    return run;
+  };
+  for (const std::string& scenario : sweep.scenarios) {
+    asked.push_back(first(scenario));
+    for (const bench::SweepAxis& axis : sweep.axes) {
+      const std::size_t count = std::min(axis.values.size(), kMostChecked);
+      for (std::size_t i = 1; i < count; ++i) {
+        bench::PlannedRun& run = asked.emplace_back(first(scenario));
+        run.factors[axis.name] = axis.values[i * (axis.values.size() - 1) / (count - 1)];
+      }
+    }
+  }
+  Checked checked;
+  Fingerprint inputs;
+  std::exception_ptr first_error;
+  bool seed_matters = false;
+  for (const bench::PlannedRun& run : asked) {
+    ++checked.num_checked;
+    try {
+      const Problem problem = Load(run);
+      const bench::RunIdentity identity = Identify(problem.scenario, paths_);
+      inputs.Add(identity.scenario);
+      inputs.Add(identity.models);
+      seed_matters = seed_matters || !scenarios::WhatTheSeedChanges(problem.scenario).empty();
+    } catch (const InputError& error) {
+      if (!first_error) first_error = std::current_exception();
+      inputs.Add("refused");
+      std::string what = run.scenario;
+      for (const auto& [factor, value] : run.factors) what += ", " + factor + " " + value;
+      checked.refused.push_back(what + ": " + error.what());
+    }
+  }
+  if (checked.refused.size() == asked.size()) std::rethrow_exception(first_error);
+  if (sweep.seeds.size() > 1 && !seed_matters) {
+    throw InputError(sweep.name + ": seeds",
+                     "a seed changes nothing: the scenario has no variations, nothing walks at "
+                     "random, and its sensor is perfect");
+  }
+  checked.inputs = inputs.Text();
+  return checked;
+}
+
+bench::ShardMaker SweepRunner::Maker() const {
+  const std::string path = out_ + "/plan.json";
+  const auto plan = nlohmann::json::parse(ReadTextFile(path, kMaxPlanBytes), nullptr, false);
+  if (!plan.is_object() || plan.value("format", "") != kPlanFormat) {
+    throw InputError(path, "is no plan of this version of sidestep");
+  }
+  return {plan.value("build", ""), plan.value("inputs", "")};
+}
+
+void SweepRunner::PrepareFolder(const bench::ShardMaker& maker, bool again) const {
+  MakeOutFolder(out_, {"plan.json"});
+  MakeOutFolder(shards(), {});
+  if (plan_.sweep().traces != bench::KeptTraces::kNone) MakeOutFolder(out_ + "/traces", {});
+  std::error_code error;
+  if (fs::exists(out_ + "/plan.json", error)) {
+    const bench::ShardMaker before = Maker();
+    if (before == maker) return;
+    if (!again) {
+      throw InputError(
+          out_,
+          std::string("holds runs of ") +
+              (before.build != maker.build ? "another build of sidestep"
+                                           : "other scenarios or robots (a file of theirs has "
+                                             "changed)") +
+              ": take another folder by --out, or let --again run them again (what is there "
+              "stays in the shards, and counts no more)");
+    }
+  }
+  WriteFile(out_ + "/plan.json", bench::JsonText({{"format", kPlanFormat},
+                                                  {"sweep", plan_.sweep().name},
+                                                  {"build", maker.build},
+                                                  {"inputs", maker.inputs}}));
+}
+
+bench::RunRow SweepRunner::RunOne(std::uint64_t index) const {
+  const bench::PlannedRun run = plan_.At(index);
+  std::optional<Problem> problem;
+  try {
+    problem = Load(run);
+  } catch (const InputError& error) {
+    return bench::FailedRow(run.factors, error.what());
+  }
+  const int guesses = plan_.sweep().search;
+  const bool is_search = IsSearch(AllFactorsOf(run));
+  bench::RecordedRun done;
+  if (is_search) {
+    done.row = bench::RunSearchRow(problem->scenario, problem->robot, guesses, run.factors);
+  } else {
+    done = bench::RunEpisodeRow(problem->scenario, problem->robot, SimulatedWorlds(paths_),
+                                run.factors);
+  }
+  done.row.identity = Identify(problem->scenario, paths_);
+  if (is_search) {
+    done.row.identity.method = "search " + std::to_string(guesses);
+    done.row.subject.knowledge = kSearch;
+  }
+  if (done.recording && WantsTrace(done.row.outcome)) {
+    AddProvenance(done.row.identity, *done.recording);
+    record::WriteRecording(*done.recording, out_ + "/" + TraceOf(plan_.KeyOf(index)));
+  }
+  return std::move(done.row);
+}
+
+bool SweepRunner::Run(const RunOptions& options) const {
+  const bench::ShardMaker maker{BuildId(), Check().inputs};
+  PrepareFolder(maker, options.again);
+  const bench::ShardName& mine = options.shard;
+  bench::ShardWriter shard(shards() + "/" + FileOf(mine), maker, Machine());
+  // Other shards of the same division hold other runs.
+  const bench::SweepRows before(plan_, shards(), maker, [&](const bench::ShardName& other) {
+    return other.of == mine.of && other.number != mine.number;
+  });
+  for (const std::string& line : before.damage()) PrintError("{}\n", line);
+  const auto is_done = [&](std::uint64_t index) {
+    if (!before.Has(index)) return false;
+    if (plan_.sweep().traces == bench::KeptTraces::kNone) return true;
+    const bench::RunRow row = before.Read(index).row;
+    const bool has_none = row.metrics.empty() || IsSearch(AllFactorsOf(plan_.At(index)));
+    std::error_code error;
+    return has_none || !WantsTrace(row.outcome) ||
+           fs::exists(out_ + "/" + TraceOf(plan_.KeyOf(index)), error);
+  };
+  const auto step = static_cast<std::uint64_t>(mine.of);
+  const auto begin = static_cast<std::uint64_t>(mine.number - 1);
+  std::vector<std::uint64_t> missing;
+  std::uint64_t count = 0;
+  for (std::uint64_t index = begin; index < plan_.num_runs(); index += step) {
+    ++count;
+    if (!is_done(index)) missing.push_back(index);
+  }
+  if (missing.size() < count) {
+    PrintError("{} of {} runs, from before\n", count - missing.size(), count);
+  }
+  const StopSignals signals;
+  SweepProgress progress(missing.size());
+  std::size_t given = 0, finished = 0;
+  bench::RunInProcesses(
+      {.num_jobs = options.jobs},
+      [&]() -> std::optional<std::uint64_t> {
+        if (signals.count() > 0 || given == missing.size()) return {};
+        return missing[given++];
+      },
+      [&](std::uint64_t index) { return bench::RowText(RunOne(index)); },
+      [&](std::uint64_t index, const bench::ProcessAnswer& answer) {
+        const bool has_crashed = !answer.why_failed.empty();
+        const std::string row =
+            has_crashed ? bench::RowText(bench::FailedRow({}, answer.why_failed)) : answer.text;
+        shard.Append(plan_.KeyOf(index), row);
+        ++finished;
+        progress.Count(row.rfind("{\"o\":\"failed\"", 0) == 0);
+      },
+      [&] { shard.Leave(); });
+  shard.Sync();
+  if (finished == missing.size()) return true;
+  PrintError("stopped by {}: {} of {} runs are finished, and the same command goes on\n",
+             signals.first(), count - missing.size() + finished, count);
+  return false;
+}
+
+bench::SweepRows SweepRunner::Rows() const { return {plan_, shards(), Maker()}; }
+
+void SweepRunner::Merge(const bench::SweepRows& rows) const {
+  const std::map<std::string, std::string> versions = Versions();
+  const bench::ShardMaker maker = Maker();
+  bench::MergeRows(plan_, rows,
+                   {.path = database(),
+                    .facts = {{"build_id", maker.build}, {"inputs", maker.inputs}},
+                    .version = VersionNumber(),
+                    .command = [&](const bench::PlannedRun& run) { return CommandOf(run); },
+                    .trace =
+                        [&](std::uint64_t key) {
+                          std::error_code error;
+                          const std::string trace = TraceOf(key);
+                          return fs::exists(out_ + "/" + trace, error) ? trace : std::string();
+                        }});
+}
+
+}  // namespace sidestep::cli

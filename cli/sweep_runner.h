@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sidestep/bench/sweep/shard_file.h"
+#include "sidestep/bench/sweep/sweep.h"
+#include "sidestep/bench/sweep/sweep_rows.h"
+#include "sidestep/cli/data_paths.h"
+#include "sidestep/cli/wiring.h"
+
+namespace sidestep::cli {
+
+/// A sweep with the programs and files that it is run with.
+class SweepRunner {
+ public:
+  /// @param folder in which the paths of the sweep's scenarios begin.
+  /// @param out the folder of its results.
+  SweepRunner(const bench::SweepPlan& plan, std::string folder, std::string out, DataPaths paths);
+
+  const std::string& out() const { return out_; }
+  std::string shards() const { return out_ + "/shards"; }
+  std::string database() const { return out_ + "/results.db"; }
+
+  /// What resolving showed: each scenario with each value of each axis, the other axes at their
+  /// first ones. So every file that the sweep needs was read, and every value judged.
+  struct Checked {
+    std::string inputs;  ///< a fingerprint of the resolved scenarios and their robots
+    int num_checked = 0;
+    std::vector<std::string> refused;  ///< of them: what, and why
+  };
+  /// @throws InputError if all are refused, or if seeds are counted and change nothing.
+  Checked Check() const;
+
+  struct RunOptions {
+    bench::ShardName shard;
+    int jobs = 1;
+    bool again =
+        false;  ///< rows of another build or of other inputs do not count, and may be there
+  };
+  /// Runs what is missing of a shard. @return whether all of it is there.
+  /// @throws InputError for a folder that is in use, belongs to other inputs, or cannot be written.
+  bool Run(const RunOptions& options) const;
+
+  /// Who made the rows that count: by the folder's plan.json.
+  /// @throws InputError if there is none.
+  bench::ShardMaker Maker() const;
+  bench::SweepRows Rows() const;
+  /// Writes the database of the rows that there are.
+  void Merge(const bench::SweepRows& rows) const;
+
+  /// One run, to its row; the trace is kept as the sweep wants it.
+  bench::RunRow RunOne(std::uint64_t index) const;
+  /// What runs this combination again, but for its seed; empty for a search.
+  std::string CommandOf(const bench::PlannedRun& run) const;
+
+ private:
+  Problem Load(const bench::PlannedRun& run) const;
+  bench::Factors AllFactorsOf(const bench::PlannedRun& run) const;
+  std::string ScenarioOf(const bench::PlannedRun& run) const;
+  std::string TraceOf(std::uint64_t key) const;
+  bool WantsTrace(const std::string& outcome) const;
+  void PrepareFolder(const bench::ShardMaker& maker, bool again) const;
+
+  const bench::SweepPlan& plan_;
+  std::string folder_, out_;
+  DataPaths paths_;
+};
+
+}  // namespace sidestep::cli
