@@ -15,7 +15,7 @@ namespace {
 // of the time of a plain loop would go into finding that out.
 void AppendChanges(const std::vector<std::uint8_t>& before, const std::vector<std::uint8_t>& now,
                    std::vector<std::int64_t>& changed) {
-  constexpr std::size_t kBlock = 256;
+  constexpr std::size_t kBlock = 4096;  // most of which have not changed
   for (std::size_t begin = 0; begin < now.size(); begin += kBlock) {
     const std::size_t end = std::min(begin + kBlock, now.size());
     if (std::memcmp(&before[begin], &now[begin], end - begin) == 0) continue;
@@ -90,7 +90,9 @@ void EpisodeRecorder::Keep(const std::vector<Scan>& scans, EpisodeTime t_arrival
   const std::vector<std::uint8_t>& cells = occupancy.cells;
   last_cells_.resize(cells.size(), 0);
   AppendChanges(last_cells_, cells, record.changed_cells);
-  last_cells_ = cells;
+  for (const std::int64_t cell : record.changed_cells) {
+    last_cells_[static_cast<std::size_t>(cell)] = cells[static_cast<std::size_t>(cell)];
+  }
   for (const Scan& scan : scans) {
     for (const ObjectObservation& object : scan.objects) {
       record.objects.push_back({object.id, object.X_WO, object.covariance});

@@ -17,7 +17,8 @@ namespace sidestep::bench {
 /// sensors differ in their rates, until one of the same moment would be there if that sensor is as
 /// late as it has been at most. So those of a sensor alone never wait, and those of several no
 /// longer than the latest of them is late. One that is later than it was before comes too late
-/// once.
+/// once. One of the future, by a clock that goes wrong, does not wait for it: who is told of it
+/// has to know.
 class ScanOrder {
  public:
   /// No scan waits longer than this after its capture, or what is known of the world gets stale.
@@ -43,10 +44,15 @@ class ScanOrder {
     HorizonOffset most_late{0};         // from capture to arrival
   };
 
-  EpisodeTime WaitsUntil(EpisodeTime capture) const;
+  struct Waiting {
+    Scan scan;
+    EpisodeTime arrival;
+  };
+
+  EpisodeTime WaitsUntil(const Waiting& one) const;
 
   std::map<std::string, Sensor> sensors_;
-  std::vector<Scan> waiting_;  // in the order of capture
+  std::vector<Waiting> waiting_;  // in the order of capture
   std::optional<EpisodeTime> taken_;
 };
 

@@ -35,6 +35,7 @@ void AddNewScenarioCommand(CommandLine& line);
 void AddImportSceneCommand(CommandLine& line);
 void AddHardwareCommand(CommandLine& line);
 void AddValidateCommand(CommandLine& line);
+void AddVerifyCommand(CommandLine& line);
 void AddManualCommand(CommandLine& line);
 
 }  // namespace sidestep::cli

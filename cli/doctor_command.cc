@@ -8,6 +8,7 @@
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/data_paths.h"
 #include "sidestep/cli/versions.h"
+#include "sidestep/cli/wiring.h"
 #include "sidestep/render/gl_context.h"
 #include "sidestep/render/video_writer.h"
 #include "sidestep/robot/robot_model.h"

@@ -75,6 +75,7 @@ int Run(int argc, char** argv) {
   sidestep::cli::AddHardwareCommand(line);
   sidestep::cli::AddFciServerCommand(line);
   sidestep::cli::AddValidateCommand(line);
+  sidestep::cli::AddVerifyCommand(line);
   sidestep::cli::AddManualCommand(line);
   const CLI::App* app = &line.app;
   for (int i = 1; i < argc && argv[i][0] != '-' && !sidestep::cli::Commands(*app).empty(); ++i) {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "sidestep/cli/option_lists.h"
-#include "sidestep/cli/shell_quote.h"
+#include "sidestep/cli/run_case.h"
 #include "sidestep/cli/varied_keys.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/scenarios/scenario.h"
@@ -15,8 +15,8 @@
 namespace sidestep::cli {
 namespace {
 
-constexpr const char* kSpeed = "speed_m_s";
 constexpr const char* kSeed = "seed";
+constexpr const char* kSpeed = kSpeedFactor;
 
 // Every combination of `cases` with the values of one more factor.
 std::vector<bench::Factors> Cross(const std::vector<bench::Factors>& cases,
@@ -108,45 +108,6 @@ std::vector<bench::Factors> StudyCases(const StudySpace& space, const DataPaths&
   cases = Cross(cases, "knowledge", knowledge);
   cases = Cross(cases, "predictor", predictors);
   return Cross(cases, kSeed, seeds);
-}
-
-bool IsSearch(const bench::Factors& factors) {
-  const auto knowledge = factors.find("knowledge");
-  return knowledge != factors.end() && knowledge->second == kSearch;
-}
-
-Problem LoadCase(const std::string& scenario, const bench::Factors& factors,
-                 const DataPaths& paths) {
-  Overrides overrides;
-  for (const auto& [factor, value] : factors) {
-    if (factor == kSpeed) {
-      overrides.speed_m_s = std::stod(value);
-    } else if (factor == "knowledge") {
-      if (value != kSearch) overrides.knowledge = value;
-    } else if (factor == "predictor") {
-      overrides.predictor = value;
-    } else {
-      for (const auto& [key, one] : SettingsOf(factor, value)) overrides.settings[key] = one;
-    }
-  }
-  return LoadProblem(scenario, overrides, paths);
-}
-
-std::string RunCommandOf(const std::string& scenario, const bench::Factors& factors) {
-  if (IsSearch(factors)) return "";
-  std::string command = "sidestep run " + ShellQuoted(scenario);
-  for (const auto& [factor, value] : factors) {
-    if (factor == kSpeed) {
-      command += " --speed " + ShellQuoted(value);
-    } else if (factor == "knowledge" || factor == "predictor" || factor == kSeed) {
-      command += " --" + factor + " " + ShellQuoted(value);
-    } else {
-      for (const auto& [key, one] : SettingsOf(factor, value)) {
-        command += " --set " + ShellQuoted(key + "=" + one);
-      }
-    }
-  }
-  return command;
 }
 
 bench::TableAxes ChooseAxes(const std::vector<bench::Factors>& cases, bench::TableAxes axes) {

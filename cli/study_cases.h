@@ -6,12 +6,8 @@
 #include "sidestep/bench/run_row.h"
 #include "sidestep/bench/study_page.h"
 #include "sidestep/cli/data_paths.h"
-#include "sidestep/cli/wiring.h"
 
 namespace sidestep::cli {
-
-/// Stands in the place of a kind of knowledge: who knows all and has time.
-inline constexpr const char* kSearch = "search";
 
 /// What a study is of, as it is asked for on the command line.
 struct StudySpace {
@@ -27,15 +23,6 @@ struct StudySpace {
 /// Every combination: the file's choices that no setting fixes or varies, and what the flags list.
 /// @throws InputError for a value that is given twice or unknown.
 std::vector<bench::Factors> StudyCases(const StudySpace& space, const DataPaths& paths);
-
-/// @throws InputError if the combination makes no sense.
-Problem LoadCase(const std::string& scenario, const bench::Factors& factors,
-                 const DataPaths& paths);
-
-bool IsSearch(const bench::Factors& factors);
-
-/// What runs one case alone, to the same trace; empty for a search.
-std::string RunCommandOf(const std::string& scenario, const bench::Factors& factors);
 
 /// Fills what is empty, from what varies beside seeds: the kinds of knowledge or else the
 /// predictors go across, and what comes first of the others down.

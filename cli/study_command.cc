@@ -22,6 +22,7 @@
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/provenance.h"
+#include "sidestep/cli/run_case.h"
 #include "sidestep/cli/scenario_options.h"
 #include "sidestep/cli/study_cases.h"
 #include "sidestep/cli/wiring.h"

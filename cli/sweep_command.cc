@@ -11,8 +11,10 @@
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/jobs_option.h"
+#include "sidestep/cli/number_range.h"
 #include "sidestep/cli/scenario_options.h"
 #include "sidestep/cli/sweep_runner.h"
+#include "sidestep/cli/sweep_submit.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
 #include "sidestep/scenarios/scenario.h"
@@ -31,6 +33,7 @@ struct SweepOptions {
   std::vector<std::string> models;
   int jobs = 1;
   bool again = false;
+  SubmitOptions submit;
 };
 
 // A path, or the name of one that comes with Sidestep.
@@ -54,6 +57,7 @@ class Asked {
         runner_(plan_, fs::path(file_).parent_path().string(),
                 options.out.empty() ? "out/sweep/" + plan_.sweep().name : options.out, paths_) {}
 
+  const std::string& file() const { return file_; }
   const bench::SweepPlan& plan() const { return plan_; }
   const SweepRunner& runner() const { return runner_; }
 
@@ -144,7 +148,21 @@ int Status(const SweepOptions& options) {
   for (const bench::ShardName& shard : rows.being_written()) {
     Print("shard {}/{} is being written\n", shard.number, shard.of);
   }
+  for (const auto& [state, count] : QueuedTasks(asked.runner().out())) {
+    Print("in Slurm's queue: {} {}\n", count, state);
+  }
   return is_whole ? 0 : 1;
+}
+
+int SubmitShards(const SweepOptions& options) {
+  const Asked asked(options);
+  if (!options.submit.dry_run) asked.runner().Prepare(options.again);
+  std::vector<std::string> words;
+  for (const std::string& folder : options.models) {
+    words.insert(words.end(), {"--models", fs::absolute(folder).string()});
+  }
+  Submit(options.submit, asked.plan(), asked.runner(), asked.file(), words);
+  return 0;
 }
 
 int Merge(const SweepOptions& options) {
@@ -181,6 +199,13 @@ CLI::App* AddSub(CLI::App& sweep, const char* name, const char* what,
   return sub;
 }
 
+void AddAgain(CLI::App& command, SweepOptions& options) {
+  command.add_flag(
+      "--again", options.again,
+      "Where the folder holds runs of another build or of changed scenarios or robots: "
+      "run them again");
+}
+
 }  // namespace
 
 void AddSweepCommand(CommandLine& line) {
@@ -198,10 +223,16 @@ void AddSweepCommand(CommandLine& line) {
       "--shard", options->shard,
       "I/N: every N-th run from the I-th on, into a file of its own; `sweep merge` puts "
       "the shards together");
-  run->add_flag("--again", options->again,
-                "Where the folder holds runs of another build or of changed scenarios or robots: "
-                "run them again");
+  AddAgain(*run, *options);
   run->callback([&line, options] { line.exit_code = Run(*options); });
+  CLI::App* const submit = AddSub(
+      *sweep, "submit", "Hand what is missing to a cluster, and the merge after it", options);
+  AddSubmitOptions(*submit, options->submit);
+  submit
+      ->add_option("-j,--jobs", options->jobs, "Episodes at a time in each shard, a core each [1]")
+      ->check(NumberFrom(1, 256));
+  AddAgain(*submit, *options);
+  submit->callback([&line, options] { line.exit_code = SubmitShards(*options); });
   CLI::App* const status =
       AddSub(*sweep, "status", "Say how many runs are finished, failed, missing", options);
   status->callback([&line, options] { line.exit_code = Status(*options); });

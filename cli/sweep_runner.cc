@@ -9,18 +9,18 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "sidestep/bench/json_text.h"
 #include "sidestep/bench/process_pool.h"
 #include "sidestep/bench/sweep/merge.h"
 #include "sidestep/cli/build_id.h"
+#include "sidestep/cli/case_row.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/provenance.h"
+#include "sidestep/cli/run_case.h"
 #include "sidestep/cli/stop_signals.h"
-#include "sidestep/cli/study_cases.h"
 #include "sidestep/cli/sweep_progress.h"
 #include "sidestep/cli/versions.h"
 #include "sidestep/core/atomic_file.h"
@@ -71,29 +71,22 @@ std::string SweepRunner::ScenarioOf(const bench::PlannedRun& run) const {
   const std::string& name = run.scenario;
   const bool is_path = name.find('/') != std::string::npos || name.ends_with(".yaml");
   if (!is_path || fs::path(name).is_absolute()) return name;
-  return (fs::path(folder_) / name).lexically_normal().string();
+  const std::string path = (fs::path(folder_) / name).lexically_normal().string();
+  return path.find('/') == std::string::npos ? "./" + path : path;  // or it would be a name
 }
 
 bench::Factors SweepRunner::AllFactorsOf(const bench::PlannedRun& run) const {
   const scenarios::Settings& settings = plan_.sweep().settings;
   bench::Factors all(settings.begin(), settings.end());
   all.insert(run.factors.begin(), run.factors.end());
+  all["seed"] = std::to_string(run.seed);
   return all;
 }
 
-Problem SweepRunner::Load(const bench::PlannedRun& run) const {
-  bench::Factors all = AllFactorsOf(run);
-  all["seed"] = std::to_string(run.seed);
-  const std::string scenario = ScenarioOf(run);
-  // `./` for a file beside the sweep's, so that it is taken for a path.
-  return LoadCase(scenario.ends_with(".yaml") && scenario.find('/') == std::string::npos
-                      ? "./" + scenario
-                      : scenario,
-                  all, paths_);
-}
-
 std::string SweepRunner::CommandOf(const bench::PlannedRun& run) const {
-  return RunCommandOf(ScenarioOf(run), AllFactorsOf(run));
+  bench::Factors factors = AllFactorsOf(run);
+  factors.erase("seed");
+  return RunCommandOf(ScenarioOf(run), factors);
 }
 
 std::string SweepRunner::TraceOf(std::uint64_t key) const {
@@ -137,7 +130,7 @@ SweepRunner::Checked SweepRunner::Check() const {
   for (const bench::PlannedRun& run : asked) {
     ++checked.num_checked;
     try {
-      const Problem problem = Load(run);
+      const Problem problem = LoadCase(ScenarioOf(run), AllFactorsOf(run), paths_);
       const bench::RunIdentity identity = Identify(problem.scenario, paths_);
       inputs.Add(identity.scenario);
       inputs.Add(identity.models);
@@ -169,14 +162,15 @@ bench::ShardMaker SweepRunner::Maker() const {
   return {plan.value("build", ""), plan.value("inputs", "")};
 }
 
-void SweepRunner::PrepareFolder(const bench::ShardMaker& maker, bool again) const {
+bench::ShardMaker SweepRunner::Prepare(bool again) const {
+  bench::ShardMaker maker{BuildId(), Check().inputs};
   MakeOutFolder(out_, {"plan.json"});
   MakeOutFolder(shards(), {});
   if (plan_.sweep().traces != bench::KeptTraces::kNone) MakeOutFolder(out_ + "/traces", {});
   std::error_code error;
   if (fs::exists(out_ + "/plan.json", error)) {
     const bench::ShardMaker before = Maker();
-    if (before == maker) return;
+    if (before == maker) return maker;
     if (!again) {
       throw InputError(
           out_,
@@ -192,30 +186,13 @@ void SweepRunner::PrepareFolder(const bench::ShardMaker& maker, bool again) cons
                                                   {"sweep", plan_.sweep().name},
                                                   {"build", maker.build},
                                                   {"inputs", maker.inputs}}));
+  return maker;
 }
 
 bench::RunRow SweepRunner::RunOne(std::uint64_t index) const {
   const bench::PlannedRun run = plan_.At(index);
-  std::optional<Problem> problem;
-  try {
-    problem = Load(run);
-  } catch (const InputError& error) {
-    return bench::FailedRow(run.factors, error.what());
-  }
-  const int guesses = plan_.sweep().search;
-  const bool is_search = IsSearch(AllFactorsOf(run));
-  bench::RecordedRun done;
-  if (is_search) {
-    done.row = bench::RunSearchRow(problem->scenario, problem->robot, guesses, run.factors);
-  } else {
-    done = bench::RunEpisodeRow(problem->scenario, problem->robot, SimulatedWorlds(paths_),
-                                run.factors);
-  }
-  done.row.identity = Identify(problem->scenario, paths_);
-  if (is_search) {
-    done.row.identity.method = "search " + std::to_string(guesses);
-    done.row.subject.knowledge = kSearch;
-  }
+  bench::RecordedRun done =
+      RunCase(ScenarioOf(run), AllFactorsOf(run), plan_.sweep().search, paths_);
   if (done.recording && WantsTrace(done.row.outcome)) {
     AddProvenance(done.row.identity, *done.recording);
     record::WriteRecording(*done.recording, out_ + "/" + TraceOf(plan_.KeyOf(index)));
@@ -224,8 +201,7 @@ bench::RunRow SweepRunner::RunOne(std::uint64_t index) const {
 }
 
 bool SweepRunner::Run(const RunOptions& options) const {
-  const bench::ShardMaker maker{BuildId(), Check().inputs};
-  PrepareFolder(maker, options.again);
+  const bench::ShardMaker maker = Prepare(options.again);
   const bench::ShardName& mine = options.shard;
   bench::ShardWriter shard(shards() + "/" + FileOf(mine), maker, Machine());
   // Other shards of the same division hold other runs.
@@ -282,19 +258,19 @@ bool SweepRunner::Run(const RunOptions& options) const {
 bench::SweepRows SweepRunner::Rows() const { return {plan_, shards(), Maker()}; }
 
 void SweepRunner::Merge(const bench::SweepRows& rows) const {
-  const std::map<std::string, std::string> versions = Versions();
   const bench::ShardMaker maker = Maker();
+  const auto trace = [&](std::uint64_t key) {
+    std::error_code error;
+    std::string path = TraceOf(key);
+    return fs::exists(out_ + "/" + path, error) ? path : std::string();
+  };
   bench::MergeRows(plan_, rows,
                    {.path = database(),
                     .facts = {{"build_id", maker.build}, {"inputs", maker.inputs}},
                     .version = VersionNumber(),
                     .command = [&](const bench::PlannedRun& run) { return CommandOf(run); },
-                    .trace =
-                        [&](std::uint64_t key) {
-                          std::error_code error;
-                          const std::string trace = TraceOf(key);
-                          return fs::exists(out_ + "/" + trace, error) ? trace : std::string();
-                        }});
+                    .trace = trace,
+                    .scenario = [&](const bench::PlannedRun& run) { return ScenarioOf(run); }});
 }
 
 }  // namespace sidestep::cli

@@ -9,7 +9,6 @@
 #include "sidestep/bench/sweep/sweep.h"
 #include "sidestep/bench/sweep/sweep_rows.h"
 #include "sidestep/cli/data_paths.h"
-#include "sidestep/cli/wiring.h"
 
 namespace sidestep::cli {
 
@@ -34,6 +33,11 @@ class SweepRunner {
   /// @throws InputError if all are refused, or if seeds are counted and change nothing.
   Checked Check() const;
 
+  /// Makes the folder ready for rows of this program and these inputs.
+  /// @param again rows of another build or of other inputs may be there, and do not count.
+  /// @throws InputError if they are there otherwise, or the folder cannot be written.
+  bench::ShardMaker Prepare(bool again) const;
+
   struct RunOptions {
     bench::ShardName shard;
     int jobs = 1;
@@ -57,12 +61,10 @@ class SweepRunner {
   std::string CommandOf(const bench::PlannedRun& run) const;
 
  private:
-  Problem Load(const bench::PlannedRun& run) const;
   bench::Factors AllFactorsOf(const bench::PlannedRun& run) const;
   std::string ScenarioOf(const bench::PlannedRun& run) const;
   std::string TraceOf(std::uint64_t key) const;
   bool WantsTrace(const std::string& outcome) const;
-  void PrepareFolder(const bench::ShardMaker& maker, bool again) const;
 
   const bench::SweepPlan& plan_;
   std::string folder_, out_;

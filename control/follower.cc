@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t kLogLength = 4096;  // ticks: 4 s
 constexpr double kQuickening_per_s = 4;   // from full speed to rest in a quarter of a second
+constexpr double kForeseen_per_s = 2;     // what is seen to come is slowed down for more gently
 
 TrackerLimits LimitsUnder(const SafetySettings& safety, const robot::RobotModel& robot,
                           const TrackerLimits& limits) {
@@ -103,11 +104,12 @@ Command Follower::Tick(const Measured& measured, HorizonOffset period) noexcept 
 
   Reaction reaction = Reaction::kNone;
   if (supervisor_ && plan != nullptr) {
-    supervisor_->LookAhead(plan->trajectory, progress_.t - plan->start, kQuickening_per_s);
+    supervisor_->LookAhead(plan->trajectory, progress_.t - plan->start, kForeseen_per_s);
   }
   if (supervisor_) reaction = supervisor_->Judge(measured, command.motion, period_s);
-  if (reaction != Reaction::kNone) {
-    command.motion = brake();
+  const bool is_stopped = reaction > Reaction::kEase;
+  if (reaction != Reaction::kNone) command.motion = brake();
+  if (is_stopped) {
     // The robot is not where the plan is any more: it goes on by a plan that begins after this.
     if (plan != nullptr) dropped_ = plan->number;
     target_.reset();
@@ -117,13 +119,13 @@ Command Follower::Tick(const Measured& measured, HorizonOffset period) noexcept 
   robot::RobotMode mode = this->mode();
   if (reaction == Reaction::kBrake) {
     mode = robot::RobotMode::kFault;
-  } else if (plan != nullptr && reaction == Reaction::kNone) {
+  } else if (plan != nullptr && !is_stopped) {
     mode = robot::RobotMode::kMoving;
   } else if (reaction == Reaction::kHold || mode != robot::RobotMode::kReady) {
     mode = robot::RobotMode::kHolding;
   }
   mode_.store(mode, std::memory_order_relaxed);
-  is_held_.store(reaction != Reaction::kNone, std::memory_order_relaxed);
+  is_held_.store(is_stopped, std::memory_order_relaxed);
   log_.Append({measured.t, measured.q, measured.v, measured.torque, command.motion});
   return command;
 }

@@ -59,6 +59,8 @@ const char* ToString(Reaction reaction) {
       return "none";
     case Reaction::kSlow:
       return "slow";
+    case Reaction::kEase:
+      return "ease";
     case Reaction::kRefuse:
       return "refuse";
     case Reaction::kHold:

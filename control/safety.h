@@ -45,12 +45,13 @@ const char* ToString(SafetyCheck check);
 enum class Reaction {
   kNone,
   kSlow,    ///< follows its plan more slowly
+  kEase,    ///< brakes for this tick, and follows its plan on
   kRefuse,  ///< the plan is not followed: the robot brakes until another one begins
   kHold,    ///< brakes; goes on when the cause has been gone for resume_s and a new plan begins
   kBrake,   ///< brakes, and stays until a person rearms it
   kAbort,   ///< the motion ends at once: the robot stops by itself
 };
-/// "none", "slow", "refuse", "hold", "brake", "abort".
+/// "none", "slow", "ease", "refuse", "hold", "brake", "abort".
 const char* ToString(Reaction reaction);
 
 /// What the supervisor found, when it found it.
@@ -82,7 +83,7 @@ struct SafetySettings {
   double range_margin_rad = 0.1;  ///< 7: kept from position limits
   double v_share = 0.5;           ///< 7: of the robot's limits, for commands
   double a_share = 0.5;           ///< 7
-  double jerk_share = 0.1;        ///< 7
+  double jerk_share = 0.03;       ///< 7
   double floor_m = 0;             ///< 8
   double floor_margin_m = 0.02;   ///< 8
   double clearance_m = 0.05;      ///< 9

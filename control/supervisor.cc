@@ -16,6 +16,14 @@ namespace {
 constexpr std::size_t kLogLength = 1024;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+// Of the tool's speed: a compliant arm comes up to half a hundredth over what it is told.
+constexpr double kToolShare = 0.98;
+
+constexpr HorizonOffset kToldAgain(
+    0.5);  // what comes and goes is one finding until it is gone so long
+
+constexpr double kEasedShare = 0.9;  // of the pace that would do, so that the arm can catch up
+
 // Differences of sent positions are wrong by some 1e-15 rad, divided by the tick once a difference.
 constexpr double kRounding = 1e-6;
 
@@ -244,18 +252,36 @@ void Supervisor::JudgePlaces(const ObstacleReport* report, const JointPoint& nex
   }
 }
 
-// It slows down where what is planned is too fast; what is sent never is, but by a fault of ours.
+// It slows down where what is planned is too fast. A plan that gets faster more suddenly than the
+// pace can fall is not followed as quickly: the stop that is left keeps to the speed, too.
 void Supervisor::JudgeTool(const Measured& measured, const JointPoint& next, double period_s) {
   if (tool_gate_.is_open()) return;
   const ToolGate::Ahead ahead = std::exchange(tool_ahead_, {});
   pace_ = std::min(pace_, ahead.pace);
-  const double speed_m_s = tool_gate_.SpeedBetween(measured.commanded.q, next.q, period_s);
-  const double most_m_s = tool_gate_.most_m_s();
+  const double speed_m_s = std::max(tool_gate_.SpeedBetween(measured.commanded.q, next.q, period_s),
+                                    FastestOnStop_m_s(next, period_s));
+  const double most_m_s = kToolShare * tool_gate_.most_m_s();
   if (!(speed_m_s <= most_m_s)) {
-    Find(SafetyCheck::kToolSpeed, Reaction::kHold, speed_m_s, most_m_s);
-  } else {
+    eased_ = now_;
+    pace_ = std::min(pace_, kEasedShare * most_m_s / speed_m_s);
+    Find(SafetyCheck::kToolSpeed, Reaction::kEase, speed_m_s, most_m_s);
+  } else if (!eased_ || now_ - *eased_ > kToldAgain) {
     Find(SafetyCheck::kToolSpeed, Reaction::kSlow, ahead.pace < 1, ahead.fastest_m_s, most_m_s);
   }
+}
+
+// Not only what gets faster until its acceleration is taken back: where joints make up for each
+// other, the tool gets faster when one of them comes to rest before the other.
+double Supervisor::FastestOnStop_m_s(const JointPoint& next, double period_s) {
+  constexpr double kStep = 8, kMost = 96;  // ticks; by then all of them get slower
+  double fastest_m_s = 0;
+  JointVector from = next.q;
+  for (double after = kStep; after < std::min(stop_ticks_, kMost) + kStep; after += kStep) {
+    const JointVector to = OnStop(after);
+    fastest_m_s = std::max(fastest_m_s, tool_gate_.SpeedBetween(from, to, kStep * period_s));
+    from = to;
+  }
+  return fastest_m_s;
 }
 
 // What would be left in the same time, if the arm stood where it is now.
@@ -283,25 +309,28 @@ double Supervisor::PaceFor(double left_m, double at_rest_m) const {
   return std::max(near, aside);
 }
 
-void Supervisor::PlaceStop(const JointPoint& next, double period_s) {
-  std::array<std::optional<JointStop>, kMaxJoints> stops;
-  double ticks = 0;
+JointVector Supervisor::OnStop(double ticks) const {
+  JointVector q(tracker_.num_joints());
   for (int j = 0; j < tracker_.num_joints(); ++j) {
-    auto& stop = stops[static_cast<std::size_t>(j)];
-    stop.emplace(JointMotion{next.q(j), next.v(j), next.a(j)}, tracker_.bounds(j), period_s);
-    ticks = std::max(ticks, stop->ticks());
+    q(j) = stop_[static_cast<std::size_t>(j)]->PositionAfter(ticks);
   }
-  JointVector q = next.q;
+  return q;
+}
+
+void Supervisor::PlaceStop(const JointPoint& next, double period_s) {
+  stop_ticks_ = 0;
+  for (int j = 0; j < tracker_.num_joints(); ++j) {
+    auto& stop = stop_[static_cast<std::size_t>(j)];
+    stop.emplace(JointMotion{next.q(j), next.v(j), next.a(j)}, tracker_.bounds(j), period_s);
+    stop_ticks_ = std::max(stop_ticks_, stop->ticks());
+  }
   for (std::size_t k = 0; k <= kStops; ++k) {
-    const double after = std::round(ticks * static_cast<double>(k) / kStops);
-    for (int j = 0; j < tracker_.num_joints(); ++j) {
-      q(j) = stops[static_cast<std::size_t>(j)]->PositionAfter(after);
-    }
+    const double after = std::round(stop_ticks_ * static_cast<double>(k) / kStops);
     placed_s_[k] = (1 + after) * period_s;
-    if (ticks == 0 && k > 0) {
+    if (stop_ticks_ == 0 && k > 0) {
       placed_[k] = placed_[0];
     } else {
-      capsules_.Place(q, placed_[k]);
+      capsules_.Place(OnStop(after), placed_[k]);
     }
   }
 }
@@ -316,7 +345,8 @@ Reaction Supervisor::React() {
   if (worst_ == Reaction::kBrake) is_braked_ = true;
   if (worst_ == Reaction::kHold) held_until_ = now_ + HorizonOffset(settings_.resume_s);
   if (is_braked_) return Reaction::kBrake;
-  return held_until_ && now_ < *held_until_ ? Reaction::kHold : Reaction::kNone;
+  if (held_until_ && now_ < *held_until_) return Reaction::kHold;
+  return worst_ == Reaction::kEase ? Reaction::kEase : Reaction::kNone;
 }
 
 }  // namespace sidestep::control

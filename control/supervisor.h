@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "sidestep/control/arm_capsules.h"
+#include "sidestep/control/joint_motion.h"
 #include "sidestep/control/latest.h"
 #include "sidestep/control/ring_log.h"
 #include "sidestep/control/safety.h"
@@ -55,7 +56,7 @@ class Supervisor {
   /// speed on it. @param slowing_per_s how quickly the pace can fall.
   void LookAhead(const Trajectory& plan, HorizonOffset offset, double slowing_per_s) noexcept;
 
-  /// What is to be done instead of sending `next`: kNone, kHold or kBrake.
+  /// What is to be done instead of sending `next`: kNone, kEase, kHold or kBrake.
   Reaction Judge(const Measured& measured, const JointPoint& next, double period_s) noexcept;
 
   /// The share of the planned speed at which plans are to be followed on, as of the latest Judge.
@@ -90,7 +91,9 @@ class Supervisor {
   void JudgeTool(const Measured& measured, const JointPoint& next, double period_s);
   double MarginAtRest(const ObstacleReport& report) const;
   double PaceFor(double left_m, double at_rest_m) const;
+  double FastestOnStop_m_s(const JointPoint& next, double period_s);
   void PlaceStop(const JointPoint& next, double period_s);
+  JointVector OnStop(double ticks) const;
   Reaction React();
 
   const robot::RobotModel robot_;
@@ -114,9 +117,12 @@ class Supervisor {
   int rearmed_ = 0;
   bool is_braked_ = false;
   std::optional<EpisodeTime> held_until_;
+  std::array<std::optional<JointStop>, kMaxJoints> stop_;  // that would follow the command
+  double stop_ticks_ = 0;
   // The capsules at kStops + 1 moments of the stop after the command, and those moments.
   std::array<ArmCapsules::All, kStops + 1> placed_;
   std::array<double, kStops + 1> placed_s_{};
+  std::optional<EpisodeTime> eased_;  // the latest time
   ToolGate tool_gate_;
   ToolGate::Ahead tool_ahead_;
 };

@@ -6,22 +6,47 @@
 
 namespace sidestep::sim {
 
-SimulatedTruth::SimulatedTruth(const World& world) : world_(world), distance_(world.model()) {
+namespace {
+
+std::vector<int> OthersOf(const WorldGeoms& geoms) {
+  std::vector<int> others;
+  for (const std::vector<int>* some : {&geoms.floor, &geoms.fixed, &geoms.moving}) {
+    others.insert(others.end(), some->begin(), some->end());
+  }
+  return others;
+}
+
+// What touches is found by other means than distances are, to within less than this.
+constexpr double kSurelyApart_m = 1e-3;
+
+}  // namespace
+
+SimulatedTruth::SimulatedTruth(const World& world)
+    : SimulatedTruth(world, FindWorldGeoms(world.model())) {}
+
+SimulatedTruth::SimulatedTruth(const World& world, const WorldGeoms& geoms)
+    : world_(world),
+      distance_(world.model()),
+      robot_shift_(world.model(), geoms.robot),
+      other_shift_(world.model(), OthersOf(geoms)) {
   const mjModel& model = world.model();
-  const WorldGeoms geoms = FindWorldGeoms(model);
   for (const int robot_geom : geoms.robot) {
     const int link = model.geom_bodyid[robot_geom];
-    for (const std::vector<int>* others : {&geoms.floor, &geoms.fixed, &geoms.moving}) {
-      for (const int other_geom : *others) {
-        const int other = model.geom_bodyid[other_geom];
-        const bool never_meet = IsFixed(model, link) && IsFixed(model, other);
-        if (!never_meet && !IsExcluded(model, link, other)) {
-          pairs_.push_back({robot_geom, other_geom});
-        }
+    for (const int other_geom : OthersOf(geoms)) {
+      const int other = model.geom_bodyid[other_geom];
+      const bool never_meet = IsFixed(model, link) && IsFixed(model, other);
+      if (!never_meet && !IsExcluded(model, link, other)) {
+        pairs_.push_back({robot_geom, other_geom});
       }
     }
   }
   Observe();
+}
+
+// Most ticks it is enough to know that nothing has come as far as all things were apart.
+bool SimulatedTruth::MayTouch() const {
+  const double come_m = robot_shift_.Most_m(world_.data()) + other_shift_.Most_m(world_.data());
+  return !(clearance_m_ - come_m > kSurelyApart_m);
 }
 
 void SimulatedTruth::Observe() {
@@ -31,7 +56,8 @@ void SimulatedTruth::Observe() {
   const Pair* deepest_pair = nullptr;
   Touch deepest;
   deepest.depth_m = -1;
-  for (const Pair& pair : pairs_) {
+  const std::vector<Pair> none;
+  for (const Pair& pair : MayTouch() ? pairs_ : none) {
     if (distance_.LowerBound(data, pair.robot_geom, pair.other_geom) > 0) continue;
     const auto touch = FindTouch(model, data, pair.robot_geom, pair.other_geom);
     if (!touch) continue;
@@ -59,6 +85,9 @@ void SimulatedTruth::Describe() {
   } else {
     MeasureDepth();
   }
+  clearance_m_ = pending_.clearance_m;
+  robot_shift_.Begin(world_.data());
+  other_shift_.Begin(world_.data());
   pending_.t = world_.time();
   pending_.X_WO.clear();
   for (const scenarios::MovingObstacle& obstacle : world_.obstacles()) {

@@ -7,6 +7,7 @@
 
 #include "sidestep/robot/world_truth.h"
 #include "sidestep/sim/geom_distance.h"
+#include "sidestep/sim/geom_shift.h"
 #include "sidestep/sim/world.h"
 #include "sidestep/sim/world_geoms.h"
 
@@ -41,10 +42,13 @@ class SimulatedTruth final : public robot::WorldTruth {
   std::optional<TruthSample> ContactSinceLastSample() const override;
 
  private:
+  SimulatedTruth(const World& world, const WorldGeoms& geoms);
+
   struct Pair {
     int robot_geom, other_geom;
   };
 
+  bool MayTouch() const;
   void NoteContact(const std::string& object, const Touch& touch);
   void NoteSelfContact();
   void Describe();
@@ -56,6 +60,9 @@ class SimulatedTruth final : public robot::WorldTruth {
   GeomDistance distance_;
   std::vector<Pair> pairs_;
   std::vector<Pair> touching_;  ///< at the last tick
+  /// As measured last, and how far robot and others have moved since then.
+  double clearance_m_ = 0;
+  GeomShift robot_shift_, other_shift_;
   /// Collects what happens until the next sample; whole as soon as it holds a contact.
   TruthSample pending_;
   std::vector<TruthSample> samples_;

@@ -375,7 +375,7 @@ class RunDatabaseWriter::Tables {
     experiment.Bind(9, std::string());
     experiment.Bind(10, std::string());
     experiment.Bind(11, std::int64_t{0});
-    experiment.Bind(12, std::string());
+    experiment.Bind(12, run.setup);
     if (!has_robot) BindText(experiment, 13, row.subject.robot);
     BindFactors(experiment, has_robot ? 13 : 14, row, false);
     experiment.Step();

@@ -24,9 +24,10 @@ struct RunTableHead {
 
 /// One run as it stands in a database.
 struct NumberedRun {
-  std::int64_t id = 0;  ///< from 1, ascending from row to row
-  std::string key;      ///< of the sweep's plan
-  std::string scenario;
+  std::int64_t id = 0;   ///< from 1, ascending from row to row
+  std::string key;       ///< of the sweep's plan
+  std::string scenario;  ///< as the sweep names it
+  std::string setup;     ///< what it is loaded by
   std::uint64_t seed = 0;
   int machine = 0;
   std::string combination_command;  ///< RunRow::command without its seed; empty: none

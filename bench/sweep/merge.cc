@@ -19,6 +19,7 @@ RunTableHead HeadOf(const SweepPlan& plan, const SweepRows& rows, const MergeOpt
   head.facts["num_planned"] = std::to_string(plan.num_runs());
   head.facts["num_done"] = std::to_string(rows.num_done());
   head.facts["scenarios"] = Joined(sweep.scenarios);
+  if (sweep.search > 0) head.facts["search"] = std::to_string(sweep.search);
   for (const auto& [key, value] : sweep.settings) head.facts["set." + key] = value;
   if (!sweep.question.factor.empty()) {
     head.facts["compare.factor"] = sweep.question.factor;
@@ -51,8 +52,13 @@ void MergeRows(const SweepPlan& plan, const SweepRows& rows, const MergeOptions&
     found.row.factors = std::move(planned.factors);
     const std::uint64_t key = plan.KeyOf(index);
     found.row.trace = options.trace(key);
-    writer.Add({static_cast<std::int64_t>(index + 1), KeyText(key), planned.scenario, planned.seed,
-                found.machine, of_combination},
+    writer.Add({.id = static_cast<std::int64_t>(index + 1),
+                .key = KeyText(key),
+                .scenario = planned.scenario,
+                .setup = options.scenario(planned),
+                .seed = planned.seed,
+                .machine = found.machine,
+                .combination_command = of_combination},
                found.row);
   }
   writer.Commit();

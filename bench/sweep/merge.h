@@ -18,6 +18,8 @@ struct MergeOptions {
   std::function<std::string(const PlannedRun&)> command;
   /// Where the trace of the run of this key is; empty: it was not kept.
   std::function<std::string(std::uint64_t key)> trace;
+  /// What its scenario is to be loaded by: a name, or a path.
+  std::function<std::string(const PlannedRun&)> scenario;
 };
 
 /// Writes the finished runs of a plan to a database, in the plan's order: the same file, but for

@@ -96,7 +96,12 @@ INSTANTIATE_TEST_SUITE_P(
                           1},
                       Case{"TwoOfOneMoment",
                            {{"right", 0, 0.05}, {"left", 0.1, 0.1}, {"right", 0.1, 0.11}},
-                           {{0, 0.05}, {0.1, 0.11}, {0.1, 0.11}}}),
+                           {{0, 0.05}, {0.1, 0.11}, {0.1, 0.11}}},
+                      // By a clock that is 0.3 s ahead.
+                      Case{"OneIsOfTheFuture",
+                           {{"left", 0.3, 0}, {"right", 0.05, 0.05}, {"left", 0.4, 0.1}},
+                           {{0.3, 0}, {0.4, 0.1}},
+                           1}),
     [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace

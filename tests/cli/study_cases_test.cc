@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sidestep/cli/run_case.h"
 #include "sidestep/cli/shell_quote.h"
 #include "sidestep/cli/varied_keys.h"
 #include "sidestep/core/input_error.h"

@@ -93,6 +93,22 @@ class Scene {
     follower_.Submit(swing, EpisodeTime(static_cast<double>(ticks_) * kTick_s));
   }
 
+  // Submits a plan that goes on from here, but gets faster as suddenly as it can for 0.2 s.
+  void Surge() {
+    constexpr int kStates = 101, kSurge = 10;
+    constexpr double kStep_s = 0.02, kFaster = 7, kSlower = -2;  // rad/s^2
+    Trajectory surge;
+    surge.t_s = Eigen::VectorXd::LinSpaced(kStates, 0, (kStates - 1) * kStep_s);
+    surge.q = Eigen::VectorXd(state_.q).replicate(1, kStates);
+    surge.v = Eigen::VectorXd(state_.v).replicate(1, kStates);
+    for (int k = 1; k < kStates; ++k) {
+      const double v = surge.v(0, k - 1);
+      surge.v(0, k) = std::max(0.0, v + kStep_s * (k <= kSurge ? kFaster : kSlower));
+      surge.q(0, k) = surge.q(0, k - 1) + kStep_s * (v + surge.v(0, k)) / 2;
+    }
+    follower_.Submit(surge, EpisodeTime(static_cast<double>(ticks_) * kTick_s));
+  }
+
   Follower& follower() { return follower_; }
   const JointPoint& state() const { return state_; }
   robot::RobotMode mode() const { return follower_.mode(); }
@@ -352,13 +368,28 @@ TEST(Supervisor, KeepsTheToolBelowItsSpeedAndFollowsThePlanOn) {
   }
 }
 
+// However suddenly a plan gets faster, the stop that is left keeps to the speed, too.
+TEST(Supervisor, KeepsTheToolBelowItsSpeedWhenAPlanSurges) {
+  for (const double share : {1.05, 1.2, 1.5, 2.0}) {
+    Scene before;
+    const double before_m_s = FastestTool_m_s(before, 0.7);
+    SafetySettings settings = Lab();
+    settings.tool_speed_m_s = share * before_m_s;
+    Scene scene(settings);
+    FastestTool_m_s(scene, 0.7);
+    scene.Surge();
+    EXPECT_LE(FastestTool_m_s(scene, 2), settings.tool_speed_m_s) << share;
+    EXPECT_EQ(scene.mode(), robot::RobotMode::kMoving) << share;
+  }
+}
+
 TEST(Supervisor, WritesDownAToolThatWouldBeTooFastWhenItObserves) {
   SafetySettings settings = Lab();
   settings.profile = SafetyProfile::kObserve;
   settings.tool_speed_m_s = 0.1;
   Scene scene(settings);
   EXPECT_GT(FastestTool_m_s(scene, 2), 0.2);
-  EXPECT_NE(scene.First(SafetyCheck::kToolSpeed, Reaction::kHold), nullptr);
+  EXPECT_NE(scene.First(SafetyCheck::kToolSpeed, Reaction::kEase), nullptr);
   EXPECT_EQ(scene.follower().lag().seconds(), 0);
 }
 

@@ -1,0 +1,33 @@
+#include "sidestep/cli/case_row.h"
+
+#include <optional>
+
+#include "sidestep/cli/provenance.h"
+#include "sidestep/cli/run_case.h"
+#include "sidestep/core/input_error.h"
+
+namespace sidestep::cli {
+
+bench::RecordedRun RunCase(const std::string& scenario, const bench::Factors& factors, int guesses,
+                           const DataPaths& paths) {
+  std::optional<Problem> problem;
+  try {
+    problem = LoadCase(scenario, factors, paths);
+  } catch (const InputError& error) {
+    return {bench::FailedRow({}, error.what()), {}};
+  }
+  bench::RecordedRun run;
+  if (IsSearch(factors)) {
+    run.row = bench::RunSearchRow(problem->scenario, problem->robot, guesses, {});
+  } else {
+    run = bench::RunEpisodeRow(problem->scenario, problem->robot, SimulatedWorlds(paths), {});
+  }
+  run.row.identity = Identify(problem->scenario, paths);
+  if (IsSearch(factors)) {
+    run.row.identity.method = "search " + std::to_string(guesses);
+    run.row.subject.knowledge = kSearch;
+  }
+  return run;
+}
+
+}  // namespace sidestep::cli

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "sidestep/bench/run_row.h"
+#include "sidestep/cli/data_paths.h"
+
+namespace sidestep::cli {
+
+/// Runs a case (cli/run_case.h) to its row, whose factors are not filled; one that is refused is a
+/// row too.
+/// @param guesses of a search.
+bench::RecordedRun RunCase(const std::string& scenario, const bench::Factors& factors, int guesses,
+                           const DataPaths& paths);
+
+}  // namespace sidestep::cli

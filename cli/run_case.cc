@@ -1,0 +1,47 @@
+#include "sidestep/cli/run_case.h"
+
+#include "sidestep/cli/shell_quote.h"
+#include "sidestep/cli/varied_keys.h"
+
+namespace sidestep::cli {
+
+bool IsSearch(const bench::Factors& factors) {
+  const auto knowledge = factors.find("knowledge");
+  return knowledge != factors.end() && knowledge->second == kSearch;
+}
+
+Problem LoadCase(const std::string& scenario, const bench::Factors& factors,
+                 const DataPaths& paths) {
+  Overrides overrides;
+  for (const auto& [factor, value] : factors) {
+    if (factor == kSpeedFactor) {
+      overrides.speed_m_s = std::stod(value);
+    } else if (factor == "knowledge") {
+      if (value != kSearch) overrides.knowledge = value;
+    } else if (factor == "predictor") {
+      overrides.predictor = value;
+    } else {
+      for (const auto& [key, one] : SettingsOf(factor, value)) overrides.settings[key] = one;
+    }
+  }
+  return LoadProblem(scenario, overrides, paths);
+}
+
+std::string RunCommandOf(const std::string& scenario, const bench::Factors& factors) {
+  if (IsSearch(factors)) return "";
+  std::string command = "sidestep run " + ShellQuoted(scenario);
+  for (const auto& [factor, value] : factors) {
+    if (factor == kSpeedFactor) {
+      command += " --speed " + ShellQuoted(value);
+    } else if (factor == "knowledge" || factor == "predictor" || factor == "seed") {
+      command += " --" + factor + " " + ShellQuoted(value);
+    } else {
+      for (const auto& [key, one] : SettingsOf(factor, value)) {
+        command += " --set " + ShellQuoted(key + "=" + one);
+      }
+    }
+  }
+  return command;
+}
+
+}  // namespace sidestep::cli
