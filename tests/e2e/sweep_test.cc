@@ -13,6 +13,7 @@
 
 #include "sidestep/bench/database/run_database.h"
 #include "sidestep/bench/sweep/shard_file.h"
+#include "sidestep/core/csv.h"
 #include "tests/support/bytes_of.h"
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
@@ -259,6 +260,39 @@ TEST_F(SweepTest, KeepsTheTracesThatAreAskedForAlsoAfterwards) {
     ++kept;
   }
   EXPECT_GT(kept, 0);
+}
+
+TEST_F(SweepTest, IsReadByPythonAsTheExampleSays) {
+  if (RunProgram({"/usr/bin/python3", "-c", "import pandas, h5py"}).exit_code != 0) {
+    GTEST_SKIP() << "needs Debian's python3-pandas and python3-h5py";
+  }
+  Write(std::string(kSweep) + "traces: all\n");
+  ASSERT_EQ(Sweep("run", "out", {"--csv"}).exit_code, 0);
+  const Finished example =
+      RunProgram({"/usr/bin/python3", SIDESTEP_SOURCE_DIR "/examples/sweeps/read_results.py",
+                  DatabaseOf("out")});
+  EXPECT_EQ(example.exit_code, 0) << example.err;
+  EXPECT_THAT(example.out, HasSubstr("walkway_behaviours prediction"));
+  EXPECT_THAT(example.out, HasSubstr(" ticks of 7 joints"));
+}
+
+TEST_F(SweepTest, WritesACsvOfEveryRow) {
+  ASSERT_EQ(Sweep("run", "out", {"--csv"}).exit_code, 0);
+  const CsvFile csv = ReadCsv(OutOf("out") + "/results.csv");
+  const bench::RunDatabase database(DatabaseOf("out"));
+  EXPECT_EQ(csv.columns, database.columns());
+  ASSERT_EQ(csv.rows.size(), static_cast<std::size_t>(kNumRuns));
+  const auto column = std::find(csv.columns.begin(), csv.columns.end(), "goal_error_rad");
+  const auto c = static_cast<std::size_t>(column - csv.columns.begin());
+  bench::SqlStatement rows = database.Select("goal_error_rad");
+  for (const CsvRow& line : csv.rows) {
+    ASSERT_TRUE(rows.Step());
+    if (rows.IsNull(0)) {
+      EXPECT_EQ(line.fields[c], "");
+    } else {
+      EXPECT_EQ(std::stod(line.fields[c]), rows.Number(0));
+    }
+  }
 }
 
 TEST_F(SweepTest, IsVerifiedBitForBit) {
