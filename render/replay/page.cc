@@ -274,8 +274,8 @@ std::string ReplayStyle() { return std::string(kReplayCss); }
 
 std::string ReplayScripts() {
   std::string scripts;
-  for (const std::string_view script :
-       {kThreeNoticeJs, kThreeJs, kOrbitControlsJs, kReplayDataJs, kReplaySceneJs, kReplayChartJs, kReplayJs}) {
+  for (const std::string_view script : {kThreeNoticeJs, kThreeJs, kOrbitControlsJs, kReplayDataJs,
+                                        kReplaySceneJs, kReplayChartJs, kReplayJs}) {
     scripts += "<script>\n" + std::string(script) + "\n</script>\n";
   }
   return scripts;
