@@ -319,7 +319,7 @@ class Loop {
     has_scan_ = true;
     model_->Observe(scans);
     for (TrackEvent& event : model_->TakeEvents()) recorder_.Keep(std::move(event));
-    recorder_.Keep(scans, EpisodeTime(now_s_), model_->Occupancy());
+    recorder_.Keep(scans, EpisodeTime(now_s_), model_->ChangedCells());
     if (safety_) world_.robot->Watch(safety_->Observe(scans));
   }
 

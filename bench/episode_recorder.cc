@@ -1,7 +1,6 @@
 #include "sidestep/bench/episode_recorder.h"
 
 #include <algorithm>
-#include <cstring>
 #include <string>
 #include <utility>
 
@@ -10,20 +9,6 @@
 
 namespace sidestep::bench {
 namespace {
-
-// Appends the indices at which two grids of one size differ. Most of a scan is as it was, and most
-// of the time of a plain loop would go into finding that out.
-void AppendChanges(const std::vector<std::uint8_t>& before, const std::vector<std::uint8_t>& now,
-                   std::vector<std::int64_t>& changed) {
-  constexpr std::size_t kBlock = 4096;  // most of which have not changed
-  for (std::size_t begin = 0; begin < now.size(); begin += kBlock) {
-    const std::size_t end = std::min(begin + kBlock, now.size());
-    if (std::memcmp(&before[begin], &now[begin], end - begin) == 0) continue;
-    for (std::size_t i = begin; i < end; ++i) {
-      if (now[i] != before[i]) changed.push_back(static_cast<std::int64_t>(i));
-    }
-  }
-}
 
 // The robot's times these; scales are infinite where nothing was asked for.
 record::MotionLimits LimitsOf(const robot::RobotModel& robot, double v_scale = 1,
@@ -83,16 +68,11 @@ void EpisodeRecorder::Keep(ControlSample tick) {
 }
 
 void EpisodeRecorder::Keep(const std::vector<Scan>& scans, EpisodeTime t_arrival,
-                           const OccupancyGrid& occupancy) {
+                           std::span<const std::size_t> changed_cells) {
   record::ObservationRecord& record = recording_.observations.emplace_back();
   record.t = scans.front().t;
   record.t_arrival = t_arrival;
-  const std::vector<std::uint8_t>& cells = occupancy.cells;
-  last_cells_.resize(cells.size(), 0);
-  AppendChanges(last_cells_, cells, record.changed_cells);
-  for (const std::int64_t cell : record.changed_cells) {
-    last_cells_[static_cast<std::size_t>(cell)] = cells[static_cast<std::size_t>(cell)];
-  }
+  record.changed_cells.assign(changed_cells.begin(), changed_cells.end());
   for (const Scan& scan : scans) {
     for (const ObjectObservation& object : scan.objects) {
       record.objects.push_back({object.id, object.X_WO, object.covariance});

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "sidestep/bench/episode_world.h"
-#include "sidestep/core/grid.h"
 #include "sidestep/core/observations.h"
 #include "sidestep/core/samples.h"
 #include "sidestep/core/time.h"
@@ -28,8 +28,10 @@ class EpisodeRecorder {
   void Keep(SafetyEvent event) { recording_.safety.push_back(std::move(event)); }
   /// What sensors captured at one moment is one observation.
   /// @param scans at least one, of one time of capture.
-  /// @param occupancy what is filled after these scans, which had arrived at `t_arrival`.
-  void Keep(const std::vector<Scan>& scans, EpisodeTime t_arrival, const OccupancyGrid& occupancy);
+  /// @param changed_cells those that are filled or free now, and were not before these scans, which
+  /// had arrived at `t_arrival`; ascending.
+  void Keep(const std::vector<Scan>& scans, EpisodeTime t_arrival,
+            std::span<const std::size_t> changed_cells);
 
   const record::Recording& recording() const { return recording_; }
   /// What there is; nothing is kept after that.
@@ -38,7 +40,6 @@ class EpisodeRecorder {
  private:
   const robot::RobotModel& robot_;
   record::Recording recording_;
-  std::vector<std::uint8_t> last_cells_;  // filled after the latest scan
 };
 
 }  // namespace sidestep::bench

@@ -11,6 +11,7 @@
 
 #include "sidestep/sdf/composite_field.h"
 #include "sidestep/sdf/map/cells_near.h"
+#include "sidestep/sdf/map/grid_changes.h"
 #include "sidestep/sdf/map/object_field.h"
 #include "sidestep/sdf/map/static_map.h"
 #include "sidestep/sdf/once_per_time.h"
@@ -57,13 +58,21 @@ class MappedWorld : public WorldModel {
       if (scan.kind == ScanKind::kSolid) rule_ = options_.cells;
     }
     LearnObjects(objects, t);
+    // The map knows what one scan has changed of what it fills itself.
+    const bool is_of_map = occupancy_ != &with_objects_;
+    const bool was_of_map = std::exchange(was_of_map_, is_of_map);
+    const bool is_one_scan = scans.size() == 1 && is_of_map && was_of_map;
+    changed_ = changes_.Update(*occupancy_, is_one_scan ? scan_map_.may_differ() : std::nullopt);
     const OccupancyGrid& unexplained = Unexplained();
+    may_differ_.reset();
+    if (&unexplained == occupancy_) may_differ_ = changed_;
     times_.map_s += stopwatch.Lap();
     Learn(unexplained, t);
     t_scan_ = t;
   }
 
   const OccupancyGrid& Occupancy() const final { return *occupancy_; }
+  std::span<const std::size_t> ChangedCells() const final { return changed_; }
 
   std::shared_ptr<const DistanceField> MakeField() final {
     if (!t_scan_) throw std::invalid_argument("WorldModel: no scan yet");
@@ -102,6 +111,8 @@ class MappedWorld : public WorldModel {
                                             options_.max_distance_m, options_.exact);
   }
 
+  // All cells of what is taken in that may not be as they were before; none: any may.
+  const std::optional<std::span<const std::size_t>>& may_differ() const { return may_differ_; }
   // Which cells solids fill in the latest scans.
   CellRule rule() const { return rule_; }
 
@@ -126,6 +137,10 @@ class MappedWorld : public WorldModel {
 
   CellRule rule_ = CellRule::kTouched;
   OccupancyGrid unexplained_;
+  bool was_of_map_ = false;  // the latest occupancy: without named objects drawn into it
+  GridChanges changes_;
+  std::span<const std::size_t> changed_;
+  std::optional<std::span<const std::size_t>> may_differ_;
 };
 
 // Knowledge::kStatic
@@ -145,7 +160,9 @@ class FrozenWorld final : public MappedWorld {
   using MappedWorld::MappedWorld;
 
  private:
-  void Learn(const OccupancyGrid& occupancy, EpisodeTime) override { static_map_.Set(occupancy); }
+  void Learn(const OccupancyGrid& occupancy, EpisodeTime) override {
+    static_map_.Set(occupancy, may_differ());
+  }
 };
 
 NamedObjectsOptions OptionsOfNamed(const WorldModelOptions& options) {
@@ -240,11 +257,11 @@ class PredictedWorld final : public MappedWorld {
 
   void Learn(const OccupancyGrid& occupancy, EpisodeTime t) override {
     const TrackerTimes times =
-        tracker_.Update(occupancy, t, {scan_map_.seen(), scan_map_.once_free()});
+        tracker_.Update(occupancy, t, {scan_map_.seen(), scan_map_.once_free()}, may_differ());
     times_.segment_s += times.segment_s;
     times_.track_s += times.track_s;
     Stopwatch stopwatch;
-    static_map_.Set(tracker_.static_occupancy());
+    static_map_.Set(tracker_.static_occupancy(), tracker_.static_may_differ());
     times_.map_s += stopwatch.Lap();
   }
 

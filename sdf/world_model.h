@@ -92,6 +92,9 @@ class WorldModel {
 
   /// What is filled after the latest scans, in the grid of the options.
   virtual const OccupancyGrid& Occupancy() const = 0;
+  /// The cells of it that are not as they were before the latest scans, ascending; before there was
+  /// any, all were free.
+  virtual std::span<const std::size_t> ChangedCells() const = 0;
 
   /// The belief after the latest scan, as an immutable snapshot. Needs at least one scan.
   virtual std::shared_ptr<const DistanceField> MakeField() = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace sidestep::sdf {
 
@@ -15,11 +16,14 @@ const OccupancyGrid& ScanRasteriser::Fill(const Scan& scan) {
   const Eigen::Index num_same = CountKept(scan);
   if (num_same > 0 && num_same == kept_p_CP_.cols()) {
     for (const std::size_t cell : passing_) occupancy_.cells[cell] = 0;
+    may_differ_ = std::move(passing_);
     passing_ = Place(scan, num_same, num_points);
+    may_differ_->insert(may_differ_->end(), passing_.begin(), passing_.end());
     return occupancy_;
   }
   // Other points than expected. What they share with the earlier ones is worth keeping unless it is
   // next to nothing; then all are, until the next scan tells.
+  may_differ_.reset();
   const Eigen::Index num_kept = 16 * num_same > num_points ? num_same : num_points;
   std::fill(occupancy_.cells.begin(), occupancy_.cells.end(), std::uint8_t{0});
   Place(scan, 0, num_kept);

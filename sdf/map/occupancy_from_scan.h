@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "sidestep/core/grid.h"
@@ -21,6 +22,8 @@ class ScanRasteriser {
 
   /// What is filled by this scan alone. Valid until the next call.
   const OccupancyGrid& Fill(const Scan& scan);
+  /// All cells that the latest scan may have changed; none: any.
+  const std::optional<std::vector<std::size_t>>& may_differ() const { return may_differ_; }
 
  private:
   // How many of the kept points begin the scan.
@@ -29,8 +32,9 @@ class ScanRasteriser {
   std::vector<std::size_t> Place(const Scan& scan, Eigen::Index begin, Eigen::Index end);
 
   OccupancyGrid occupancy_;
-  Pose X_WC_;                         // of the kept points
-  Eigen::Matrix3Xd kept_p_CP_;        // those that scans are expected to begin with
+  Pose X_WC_;                   // of the kept points
+  Eigen::Matrix3Xd kept_p_CP_;  // those that scans are expected to begin with
+  std::optional<std::vector<std::size_t>> may_differ_;
   std::vector<std::size_t> passing_;  // the cells that only later points of the latest scan fill
 };
 

@@ -27,6 +27,11 @@ const OccupancyGrid& ScanMap::Update(const Scan& scan) {
   return fused_;
 }
 
+std::optional<std::span<const std::size_t>> ScanMap::may_differ() const {
+  if (solids_.size() != 1 || surfaces_) return std::nullopt;
+  return solids_.begin()->second.may_differ();
+}
+
 void ScanMap::Fuse() {
   fused_ = surfaces_ ? surfaces_->filled() : OccupancyGrid(grid_W_);
   if (surfaces_) fused_once_free_ = surfaces_->once_free();

@@ -30,6 +30,9 @@ class ScanMap {
   /// call.
   const OccupancyGrid& Update(const Scan& scan);
 
+  /// All cells of what is filled that the latest scan may have changed; none: any.
+  std::optional<std::span<const std::size_t>> may_differ() const;
+
   /// Not 0 for each cell that a camera's latest scan looked at; empty: sensors of solids look
   /// everywhere.
   std::span<const std::uint8_t> seen() const;

@@ -2,8 +2,18 @@
 
 namespace sidestep::sdf {
 
-void StaticMap::Set(const OccupancyGrid& occupancy) {
-  if (occupancy.spec == occupancy_.spec && occupancy.cells == occupancy_.cells) return;
+void StaticMap::Set(const OccupancyGrid& occupancy,
+                    const std::optional<std::span<const std::size_t>>& may_differ) {
+  const bool is_of_same_grid = occupancy.spec == occupancy_.spec;
+  if (may_differ && is_of_same_grid) {
+    for (const std::size_t cell : *may_differ) {
+      if (occupancy_.cells[cell] == occupancy.cells[cell]) continue;
+      occupancy_.cells[cell] = occupancy.cells[cell];
+      field_.reset();
+    }
+    return;
+  }
+  if (is_of_same_grid && occupancy.cells == occupancy_.cells) return;
   occupancy_ = occupancy;
   field_.reset();
 }

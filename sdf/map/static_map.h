@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <optional>
+#include <span>
 
 #include "sidestep/core/grid.h"
 #include "sidestep/sdf/map/fast_distance_transform.h"
@@ -14,7 +17,9 @@ class StaticMap {
   explicit StaticMap(DistanceConvention convention = DistanceConvention::kSurface)
       : convention_(convention) {}
 
-  void Set(const OccupancyGrid& occupancy);
+  /// @param may_differ all cells that may not be as they were the last time; none: any may.
+  void Set(const OccupancyGrid& occupancy,
+           const std::optional<std::span<const std::size_t>>& may_differ = {});
 
   /// Of the occupancy last set; there must be one.
   std::shared_ptr<const SdfGrid> Field();

@@ -102,7 +102,8 @@ ObjectTracker::ObjectTracker(const GridSpec& grid, const ObjectTrackerOptions& o
 }
 
 TrackerTimes ObjectTracker::Update(const OccupancyGrid& occupancy, EpisodeTime t,
-                                   const Sight& sight) {
+                                   const Sight& sight,
+                                   const std::optional<std::span<const std::size_t>>& may_differ) {
   if (occupancy.spec != grid_) throw std::invalid_argument("ObjectTracker: another grid");
   for (const auto& bytes : {sight.seen, sight.once_free}) {
     if (bytes.empty() || bytes.size() == occupancy.cells.size()) continue;
@@ -128,10 +129,10 @@ TrackerTimes ObjectTracker::Update(const OccupancyGrid& occupancy, EpisodeTime t
     }
   }
   const std::vector<CellBox> latest = LatestViews();
-  static_occupancy_ = occupancy;
+  CopyStatic(occupancy, may_differ);
   std::erase_if(components, [&](const Component& component) {
     if (!IsMemory(component, latest) && !IsCrumb(component, latest)) return false;
-    for (const std::size_t cell : component.cells) static_occupancy_.cells[cell] = 0;
+    LeaveOut(component);
     return true;
   });
   std::vector<View> views = TellApart(Look(std::move(components)), t);
@@ -156,7 +157,7 @@ TrackerTimes ObjectTracker::Update(const OccupancyGrid& occupancy, EpisodeTime t
         Note(is_cut_off ? track_event::kPartlySeen : track_event::kWhollySeen, track, t);
       }
       track.partly_seen = is_cut_off;
-      for (const std::size_t cell : view.cells.cells) static_occupancy_.cells[cell] = 0;
+      LeaveOut(view.cells);
     }
   }
   for (auto& [id, track] : tracks_) {
@@ -167,6 +168,30 @@ TrackerTimes ObjectTracker::Update(const OccupancyGrid& occupancy, EpisodeTime t
   seen_ = once_free_ = {};
   times.track_s = stopwatch.Lap();
   return times;
+}
+
+void ObjectTracker::CopyStatic(const OccupancyGrid& occupancy,
+                               const std::optional<std::span<const std::size_t>>& may_differ) {
+  knows_differences_ = may_differ && static_occupancy_.spec == occupancy.spec;
+  static_may_differ_.clear();
+  if (knows_differences_) {
+    // What was left out may be there again.
+    static_may_differ_.assign(may_differ->begin(), may_differ->end());
+    static_may_differ_.insert(static_may_differ_.end(), left_out_.begin(), left_out_.end());
+    for (const std::size_t cell : static_may_differ_) {
+      static_occupancy_.cells[cell] = occupancy.cells[cell];
+    }
+  } else {
+    static_occupancy_ = occupancy;
+  }
+  left_out_.clear();
+}
+
+void ObjectTracker::LeaveOut(const Component& component) {
+  for (const std::size_t cell : component.cells) static_occupancy_.cells[cell] = 0;
+  left_out_.insert(left_out_.end(), component.cells.begin(), component.cells.end());
+  static_may_differ_.insert(static_may_differ_.end(), component.cells.begin(),
+                            component.cells.end());
 }
 
 void ObjectTracker::Miss(Track& track, EpisodeTime t) {

@@ -99,8 +99,10 @@ class ObjectTracker {
   ObjectTracker(const GridSpec& grid, const ObjectTrackerOptions& options);
 
   /// Takes in what is filled at time t.
+  /// @param may_differ all cells that may not be as they were the last time; none: any may.
   /// @throws std::invalid_argument for another grid, or unless t is later than the last.
-  TrackerTimes Update(const OccupancyGrid& occupancy, EpisodeTime t, const Sight& sight = {});
+  TrackerTimes Update(const OccupancyGrid& occupancy, EpisodeTime t, const Sight& sight = {},
+                      const std::optional<std::span<const std::size_t>>& may_differ = {});
 
   /// The things that move, by id, also those that the latest scan did not show.
   std::vector<std::shared_ptr<const TrackedObject>> MovingObjects() const;
@@ -110,6 +112,11 @@ class ObjectTracker {
 
   /// What was filled in the latest scan and does not belong to a moving thing.
   const OccupancyGrid& static_occupancy() const { return static_occupancy_; }
+  /// All cells of it that may not be as they were before the latest scan; none: any may.
+  std::optional<std::span<const std::size_t>> static_may_differ() const {
+    if (!knows_differences_) return std::nullopt;
+    return static_may_differ_;
+  }
 
  private:
   enum class State { kNew, kMoving, kResting };
@@ -166,6 +173,9 @@ class ObjectTracker {
   // Tells of things not found in this scan: whether they are one component with another thing now.
   void NoteMerges(const std::vector<View>& views, EpisodeTime t);
   void NoteTooFast(const View& view, EpisodeTime t);
+  void CopyStatic(const OccupancyGrid& occupancy,
+                  const std::optional<std::span<const std::size_t>>& may_differ);
+  void LeaveOut(const Component& component);
   void ReopenVanished(const OccupancyGrid& occupancy, EpisodeTime t);
   std::vector<View> Look(std::vector<Component> components) const;
   // Whether it is but what is remembered of a moving thing, which may be anywhere by now.
@@ -209,6 +219,9 @@ class ObjectTracker {
   ObjectTrackerOptions options_;
   Background background_;
   OccupancyGrid static_occupancy_;
+  std::vector<std::size_t> left_out_;  // of it, in the latest scan: what belongs to moving things
+  bool knows_differences_ = false;
+  std::vector<std::size_t> static_may_differ_;
   std::vector<TrackEvent> events_;
   std::map<int, Track> tracks_;  // by id, hence from the oldest to the newest
   // Of the scan that is being taken in, as Sight has it.

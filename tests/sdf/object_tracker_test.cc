@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "sidestep/sdf/map/grid_changes.h"
 #include "tests/sdf/box_scene.h"
 
 namespace sidestep::sdf {
@@ -27,14 +28,28 @@ constexpr double kRate_hz = 30;
 class Replay {
  public:
   Replay(const GridSpec& grid, std::vector<SceneBox> boxes)
-      : grid_(grid), boxes_(std::move(boxes)), tracker_(grid, {.max_distance_m = 0.3}) {}
+      : grid_(grid),
+        boxes_(std::move(boxes)),
+        tracker_(grid, {.max_distance_m = 0.3}),
+        told_(grid, {.max_distance_m = 0.3}) {}
 
   // Feeds frames up to (not including) time t_end_s, calling check(t) after each.
   template <class Check>
   void RunUntil(double t_end_s, const Check& check) {
     for (; frame_ / kRate_hz < t_end_s - 1e-9; ++frame_) {
       const EpisodeTime t(frame_ / kRate_hz);
-      tracker_.Update(Rasterise(boxes_, grid_, t), t);
+      const OccupancyGrid occupancy = Rasterise(boxes_, grid_, t);
+      tracker_.Update(occupancy, t);
+      // One that is told what has changed comes to the same.
+      OccupancyGrid before = told_.static_occupancy();
+      told_.Update(occupancy, t, {}, changes_.Update(occupancy));
+      ASSERT_EQ(told_.static_occupancy().cells, tracker_.static_occupancy().cells);
+      if (told_.static_may_differ()) {
+        for (const std::size_t cell : *told_.static_may_differ()) {
+          before.cells[cell] = told_.static_occupancy().cells[cell];
+        }
+        ASSERT_EQ(before.cells, told_.static_occupancy().cells);
+      }
       check(t);
     }
   }
@@ -50,7 +65,8 @@ class Replay {
  private:
   GridSpec grid_;
   std::vector<SceneBox> boxes_;
-  ObjectTracker tracker_;
+  ObjectTracker tracker_, told_;
+  GridChanges changes_;
   int frame_ = 0;
 };
 

@@ -24,6 +24,7 @@ class MovingBallWorld final : public sdf::WorldModel {
 
   void Observe(std::span<const Scan>) override {}
   const OccupancyGrid& Occupancy() const override { return nothing_; }
+  std::span<const std::size_t> ChangedCells() const override { return {}; }
   std::shared_ptr<const sdf::DistanceField> MakeField() override { return field_; }
   std::vector<PredictedObject> DescribeObjects(
       const std::vector<EpisodeTime>& times) const override {
