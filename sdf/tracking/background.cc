@@ -1,10 +1,12 @@
 #include "sidestep/sdf/tracking/background.h"
 
 #include <iterator>
+#include <utility>
 
 namespace sidestep::sdf {
-Background::Background(const GridSpec& grid) {
+Background::Background(const GridSpec& grid) : foreground_(0) {
   CheckGridSpec(grid);
+  foreground_ = SearchBlocks(grid.num_cells());
   is_background_.assign(grid.num_cells(), 0);
 }
 
@@ -13,8 +15,22 @@ void Background::Absorb(int id, const Component& component) {
   for (const std::size_t cell : component.cells) is_background_[cell] = 1;
 }
 
+void Background::TakeIn(const OccupancyGrid& occupancy,
+                        const std::optional<std::span<const std::size_t>>& may_differ) {
+  if (!may_differ) {
+    foreground_.MarkAll();
+    may_have_vanished_ = true;
+    return;
+  }
+  for (const std::size_t cell : *may_differ) {
+    foreground_.Mark(cell);
+    may_have_vanished_ |= is_background_[cell] != 0 && occupancy.cells[cell] == 0;
+  }
+}
+
 std::vector<int> Background::ReleaseVanished(const OccupancyGrid& occupancy, double lost_share) {
   std::vector<int> released;
+  if (!std::exchange(may_have_vanished_, false)) return released;
   for (auto it = owned_.begin(); it != owned_.end();) {
     Owned& owned = it->second;
     std::erase_if(owned.cells, [&](std::size_t cell) {
@@ -27,7 +43,10 @@ std::vector<int> Background::ReleaseVanished(const OccupancyGrid& occupancy, dou
       ++it;
       continue;
     }
-    for (const std::size_t cell : owned.cells) is_background_[cell] = 0;
+    for (const std::size_t cell : owned.cells) {
+      is_background_[cell] = 0;
+      foreground_.Mark(cell);
+    }
     released.push_back(it->first);
     it = owned_.erase(it);
   }

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "sidestep/core/grid.h"
@@ -21,13 +23,20 @@ class Background {
   /// Makes a component background, owned by `id` until that is released.
   void Absorb(int id, const Component& component);
 
+  /// What is filled has changed. @param may_differ all cells that may not be as they were the last
+  /// time; none: any may.
+  void TakeIn(const OccupancyGrid& occupancy,
+              const std::optional<std::span<const std::size_t>>& may_differ);
+
   /// Lets go of the cells that are free now. An owner that has lost more than this share of its
   /// cells since it was absorbed does not rest any more: all its cells are released, so that it is
   /// in the foreground as a whole. Returns those owners, ascending.
   std::vector<int> ReleaseVanished(const OccupancyGrid& occupancy, double lost_share);
 
-  /// 1 for each cell that is background, 0 for the others, in the order of GridSpec::Index.
-  const std::vector<std::uint8_t>& is_background() const { return is_background_; }
+  /// What is filled and not background.
+  std::vector<Component> FindForeground(const OccupancyGrid& occupancy) {
+    return FindComponents(occupancy, is_background_, &foreground_);
+  }
 
  private:
   struct Owned {
@@ -37,6 +46,8 @@ class Background {
 
   std::vector<std::uint8_t> is_background_;  // of each cell of the grid
   std::map<int, Owned> owned_;               // by owner
+  SearchBlocks foreground_;
+  bool may_have_vanished_ = false;  // some of it, since it was looked at last
 };
 
 }  // namespace sidestep::sdf

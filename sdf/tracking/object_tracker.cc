@@ -117,8 +117,9 @@ TrackerTimes ObjectTracker::Update(const OccupancyGrid& occupancy, EpisodeTime t
   TrackerTimes times;
   Stopwatch stopwatch;
 
+  background_.TakeIn(occupancy, may_differ);
   ReopenVanished(occupancy, t);
-  std::vector<Component> components = FindComponents(occupancy, background_.is_background());
+  std::vector<Component> components = background_.FindForeground(occupancy);
   times.segment_s = stopwatch.Lap();
 
   for (auto& [id, track] : tracks_) {

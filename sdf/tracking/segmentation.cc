@@ -22,15 +22,20 @@ bool AllFree(const std::uint8_t* filled, const std::uint8_t* left_out, std::size
   return any == 0;
 }
 
-std::vector<Run> FindRuns(const OccupancyGrid& occupancy, std::span<const std::uint8_t> left_out) {
-  constexpr std::size_t kChunk = 256;  // Most of a grid is free: skip that in large steps.
+std::vector<Run> FindRuns(const OccupancyGrid& occupancy, std::span<const std::uint8_t> left_out,
+                          SearchBlocks* blocks) {
   const std::span<const std::uint8_t> filled = occupancy.cells;
   const std::size_t nx = static_cast<std::size_t>(occupancy.spec.size[0]);
   std::vector<Run> runs;
   std::size_t next = 0;  // the cell that would continue the last run, 0 if there is none
-  for (std::size_t begin = 0; begin < filled.size(); begin += kChunk) {
-    const std::size_t end = std::min(begin + kChunk, filled.size());
-    if (AllFree(&filled[begin], &left_out[begin], end - begin)) continue;
+  for (std::size_t block = 0; block < blocks->num_blocks(); ++block) {
+    if (!blocks->may_hold(block)) continue;
+    const std::size_t begin = block * SearchBlocks::kCells;
+    const std::size_t end = std::min(begin + SearchBlocks::kCells, filled.size());
+    if (AllFree(&filled[begin], &left_out[begin], end - begin)) {
+      blocks->Clear(block);
+      continue;
+    }
     for (std::size_t cell = begin; cell < end; ++cell) {
       if (filled[cell] == 0 || left_out[cell] != 0) continue;
       if (cell == next && cell != 0) {
@@ -135,10 +140,20 @@ struct Growing {
 
 std::vector<Component> FindComponents(const OccupancyGrid& occupancy,
                                       std::span<const std::uint8_t> left_out) {
+  SearchBlocks all(occupancy.cells.size());
+  return FindComponents(occupancy, left_out, &all);
+}
+
+std::vector<Component> FindComponents(const OccupancyGrid& occupancy,
+                                      std::span<const std::uint8_t> left_out,
+                                      SearchBlocks* blocks) {
   if (left_out.size() != occupancy.cells.size()) {
     throw std::invalid_argument("FindComponents: left_out needs one byte a cell");
   }
-  std::vector<Run> runs = FindRuns(occupancy, left_out);
+  if (blocks->num_blocks() != SearchBlocks(left_out.size()).num_blocks()) {
+    throw std::invalid_argument("FindComponents: blocks of another grid");
+  }
+  std::vector<Run> runs = FindRuns(occupancy, left_out, blocks);
   JoinNeighbours(occupancy.spec, runs);
   std::vector<Growing> growing;
   std::vector<std::size_t> number(runs.size());  // of each run's component

@@ -107,6 +107,32 @@ TEST(Segmentation, TakesCellsThatAreLeftOutForFree) {
   EXPECT_THROW(FindComponents(grid, left_out), std::invalid_argument);
 }
 
+TEST(Segmentation, FindsTheSameWhereItNeedNotSearchWhatIsKnownToHoldNothing) {
+  RandomStream random(3, "cells");
+  OccupancyGrid grid({{0, 0, 0}, 0.1, {67, 11, 9}});
+  std::vector<std::uint8_t> left_out(grid.cells.size(), 0);
+  SearchBlocks blocks(grid.cells.size());
+  std::size_t num_unsearched = 0;
+  for (int n = 0; n < 300; ++n) {
+    for (int k = 0; k < 5; ++k) {
+      const std::size_t cell = random.Bits() % grid.cells.size();
+      grid.cells[cell] = random.Bits() % 3 == 0;
+      left_out[random.Bits() % left_out.size()] = 1;  // that needs no mark: there is less
+      blocks.Mark(cell);
+    }
+    const std::vector<Component> components = FindComponents(grid, left_out, &blocks);
+    const std::vector<Component> expected = FindComponents(grid, left_out);
+    ASSERT_EQ(components.size(), expected.size());
+    for (std::size_t c = 0; c < expected.size(); ++c) {
+      EXPECT_EQ(components[c].cells, expected[c].cells);
+    }
+    for (std::size_t b = 0; b < blocks.num_blocks(); ++b) num_unsearched += !blocks.may_hold(b);
+  }
+  EXPECT_GT(num_unsearched, 0u);
+  SearchBlocks others(grid.cells.size() + SearchBlocks::kCells);
+  EXPECT_THROW(FindComponents(grid, left_out, &others), std::invalid_argument);
+}
+
 TEST(Segmentation, DescribesABoxByItsCornersAndItsCentre) {
   OccupancyGrid grid({{-1, 0, 2}, 0.5, {10, 10, 10}});
   for (int k = 1; k <= 2; ++k)
