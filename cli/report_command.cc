@@ -53,7 +53,6 @@ bench::ReportReplays MakeReplays(const bench::RunDatabase& database,
     if (paths.empty()) continue;
     ReplayOptions replay;
     replay.titles = titles;
-    replay.field_points = 48;
     const render::ReplaySet set =
         MakeReplaySet(ReadTraces(paths), FindDataPaths(options.models), replay);
     std::string title = "seed " + std::to_string(runs.seed[of]);

@@ -122,8 +122,8 @@ class Page {
     std::vector<Question> questions;
     const auto add = [&](const Question& question) {
       const auto same = [&](const Question& other) {
-        return other.factor == question.factor && other.of == question.of &&
-               other.with == question.with;
+        return other.factor == question.factor &&
+               std::minmax(other.of, other.with) == std::minmax(question.of, question.with);
       };
       if (question.of == question.with || static_cast<int>(questions.size()) >= kMostComparisons ||
           std::any_of(questions.begin(), questions.end(), same)) {
@@ -133,14 +133,15 @@ class Page {
     };
     if (question_.factor < 0) return questions;
     add(question_);
-    for (int of = 0; of < static_cast<int>(NumLevels(runs_, question_.factor)); ++of) {
-      add({question_.factor, of, question_.with});
-    }
-    for (int factor = 0; factor < static_cast<int>(runs_.factors.size()); ++factor) {
-      for (int of = 1; of < static_cast<int>(std::min(NumLevels(runs_, factor), kMostGroups));
-           ++of) {
-        add({factor, of, 0});
+    const auto add_pairs = [&](int factor) {
+      const int count = static_cast<int>(std::min(NumLevels(runs_, factor), kMostGroups));
+      for (int of = 1; of < count; ++of) {
+        for (int with = 0; with < of; ++with) add({factor, of, with});
       }
+    };
+    add_pairs(question_.factor);
+    for (int factor = 0; factor < static_cast<int>(runs_.factors.size()); ++factor) {
+      if (factor != question_.factor) add_pairs(factor);
     }
     return questions;
   }

@@ -151,6 +151,25 @@ TEST_F(ReportTest, LeavesOutPairsOfWhichARunFailedAndSaysSo) {
   EXPECT_THAT(html, HasSubstr("no such &lt;thing&gt;"));
 }
 
+TEST_F(ReportTest, IsAPageEvenOfRunsThatAllFailed) {
+  const std::string path = (folder_.path() / "failed.db").string();
+  RunTableHead head;
+  head.factors = FactorColumnsOf({{"knowledge", {"now", "ahead"}}});
+  RunDatabaseWriter writer(path, head);
+  for (const char* const knowledge : {"now", "ahead"}) {
+    NumberedRun run;
+    run.id = knowledge == std::string("now") ? 1 : 2;
+    run.scenario = "hall";
+    writer.Add(run, FailedRow({{"knowledge", knowledge}}, "it is a trap"));
+  }
+  writer.Commit();
+  const RunDatabase database(path);
+  const SweepReport report = ReportSource(database, {}).Make({});
+  EXPECT_THAT(report.html, HasSubstr("it is a trap"));
+  EXPECT_THAT(report.answer, HasSubstr("in 0 of 0 runs"));
+  EXPECT_THAT(report.html, Not(HasSubstr("nan")));
+}
+
 TEST_F(ReportTest, LetsNoTextOfTheDatabaseBecomeMarkup) {
   Options options;
   options.title = options.touched = "</title><script>alert(1)</script>\xE9";

@@ -121,6 +121,7 @@ const ReplayChart = (() => {
       }
       add(this.svg, "path", {d: path, fill: "none", stroke: color, "stroke-width": 1.8});
       for (const [at, what, kind] of trace.marks) {
+        if (kind === "track") continue;  // there may be many: they are listed
         const mark = add(this.svg, "circle", {cx: this.x(at), cy: this.height - BOTTOM, r: 3.5,
                                               class: "mark " + kind});
         add(mark, "title", {}, `${at.toFixed(2)} s: ${what}`);
