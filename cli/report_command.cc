@@ -101,6 +101,8 @@ int Report(const ReportOptions& options) {
   }
   request.over = options.over;
   request.database = ShellQuoted(options.database);
+  const std::string folder = std::filesystem::path(options.database).parent_path().string();
+  if (!folder.empty()) request.folder = ShellQuoted(folder + "/");
   const bench::ReportSource source(database, request);
   const bench::SweepReport report = source.Make(MakeReplays(database, source, options));
   WriteFile(options.out, report.html);

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <set>
@@ -414,6 +415,15 @@ class Page {
     ListFailures();
   }
 
+  // What replays a kept trace. Names of traces are plain, in databases of ours.
+  std::string ViewCommand(const std::string& trace) const {
+    const bool is_plain = std::all_of(trace.begin(), trace.end(), [](unsigned char c) {
+      return std::isalnum(c) != 0 || c == '/' || c == '_' || c == '-' || c == '.';
+    });
+    if (trace.empty() || !is_plain) return "";
+    return CommandHtml("sidestep view " + request_.folder + trace);
+  }
+
   void ListFailures() {
     std::string factors;
     std::vector<std::string> head = {"run", "outcome", "touched, or why"};
@@ -424,7 +434,7 @@ class Page {
     head.insert(head.end(), {"seed", "clearance [mm]", "again"});
     SqlStatement run = database_.sql().Prepare(
         "SELECT id, outcome, coalesce(nullif(touched, ''), nullif(error, ''), ''), seed, "
-        "min_clearance_m, command" +
+        "min_clearance_m, command, trace" +
         factors +
         " FROM results WHERE outcome <> 'goal' ORDER BY outcome, min_clearance_m, id LIMIT " +
         std::to_string(kMostFailuresListed));
@@ -437,11 +447,11 @@ class Page {
              "<span class=\"outcome-" + Escaped(outcome) + "\">" + Escaped(outcome) + "</span>",
              Escaped(run.Text(2))};
       for (std::size_t f = 0; f < runs_.factors.size(); ++f) {
-        row.push_back(Escaped(run.Text(6 + static_cast<int>(f))));
+        row.push_back(Escaped(run.Text(7 + static_cast<int>(f))));
       }
       row.push_back(run.Text(3));
       row.push_back(FiniteText("{:.1f}", 1e3 * run.Number(4), "–"));
-      row.push_back(run.IsNull(5) ? "–" : CommandHtml(run.Text(5)));
+      row.push_back((run.IsNull(5) ? "–" : CommandHtml(run.Text(5))) + ViewCommand(run.Text(6)));
     }
     classes.resize(head.size());
     classes.back() = "text";
