@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sidestep/bench/metrics/registry.h"
+#include "sidestep/bench/sweep/sweep.h"
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/data_paths.h"
@@ -62,6 +63,7 @@ class Catalogue {
  public:
   explicit Catalogue(const DataPaths& paths) {
     AddScenarios(paths.scenarios);
+    AddSweeps(paths.scenarios + "/sweeps");
     AddRobots(paths.all_models());
     Kind& knowledge = kinds_.emplace_back(Kind{"knowledge", {}});
     for (const sdf::Knowledge one : sdf::kAllKnowledge) {
@@ -119,6 +121,20 @@ class Catalogue {
     kinds_.push_back(std::move(without));
   }
 
+  void AddSweeps(const std::string& folder) {
+    Kind sweeps{"sweeps", {}};
+    for (const std::string& name : scenarios::ScenarioNames(folder)) {
+      try {
+        const bench::SweepPlan plan(bench::ReadSweep(folder + "/" + name + ".yaml"));
+        sweeps.items.push_back({name, OneLine(plan.sweep().description) + " (" +
+                                          std::to_string(plan.num_runs()) + " runs)"});
+      } catch (const InputError& error) {
+        faults_.push_back(error.what());
+      }
+    }
+    kinds_.push_back(std::move(sweeps));
+  }
+
   std::vector<Kind> kinds_;
   std::vector<std::string> faults_;
 };
@@ -161,9 +177,9 @@ int List(const ListOptions& options) {
   if (!found) {
     throw InputError("KIND", "must be one of " + Joined(known) + ", is '" + kind_name + "'");
   }
-  const bool asks_for_scenarios =
-      kind_name.empty() || kind_name == "scenarios" || kind_name == "field_scenes";
-  if (!asks_for_scenarios) return 0;
+  const bool asks_for_files = kind_name.empty() || kind_name == "scenarios" ||
+                              kind_name == "field_scenes" || kind_name == "sweeps";
+  if (!asks_for_files) return 0;
   for (const std::string& fault : catalogue.faults()) PrintError("{}\n", fault);
   return catalogue.faults().empty() ? 0 : 2;
 }
@@ -174,7 +190,7 @@ void AddListCommand(CommandLine& line) {
   auto options = std::make_shared<ListOptions>();
   CLI::App* const list = line.app.add_subcommand(
       "list",
-      "List what can be named: scenarios, field scenes, robots, knowledge, planners, "
+      "List what can be named: scenarios, field scenes, sweeps, robots, knowledge, planners, "
       "predictors, sensors, metrics");
   list->add_option("KIND", options->kind, "Only this kind");
   list->add_flag("--names", options->only_names, "Only the names, one a line, for scripts");

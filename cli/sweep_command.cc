@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sidestep/bench/database/run_csv.h"
 #include "sidestep/bench/database/run_database.h"
 #include "sidestep/bench/sweep/sweep.h"
 #include "sidestep/cli/command.h"
@@ -32,7 +33,7 @@ struct SweepOptions {
   std::string file, out, shard;
   std::vector<std::string> models;
   int jobs = 1;
-  bool again = false;
+  bool again = false, csv = false;
   SubmitOptions submit;
 };
 
@@ -170,6 +171,10 @@ int Merge(const SweepOptions& options) {
   const bench::SweepRows rows = asked.runner().Rows();
   const bool is_whole = TellRows(asked.plan(), rows);
   asked.runner().Merge(rows);
+  if (options.csv) {
+    bench::WriteRunCsv(bench::RunDatabase(asked.runner().database()),
+                       asked.runner().out() + "/results.csv");
+  }
   PrintOutcomes(rows);
   Print("written {}: {} of {} runs\n", asked.runner().database(), rows.num_done(),
         asked.plan().num_runs());
@@ -199,6 +204,10 @@ CLI::App* AddSub(CLI::App& sweep, const char* name, const char* what,
   return sub;
 }
 
+void AddCsv(CLI::App& command, SweepOptions& options) {
+  command.add_flag("--csv", options.csv, "Also write results.csv: a line a run, every column");
+}
+
 void AddAgain(CLI::App& command, SweepOptions& options) {
   command.add_flag(
       "--again", options.again,
@@ -224,6 +233,7 @@ void AddSweepCommand(CommandLine& line) {
       "I/N: every N-th run from the I-th on, into a file of its own; `sweep merge` puts "
       "the shards together");
   AddAgain(*run, *options);
+  AddCsv(*run, *options);
   run->callback([&line, options] { line.exit_code = Run(*options); });
   CLI::App* const submit = AddSub(
       *sweep, "submit", "Hand what is missing to a cluster, and the merge after it", options);
@@ -240,6 +250,7 @@ void AddSweepCommand(CommandLine& line) {
                                  "Put the shards together in results.db; exit code 1 if some are "
                                  "missing",
                                  options);
+  AddCsv(*merge, *options);
   merge->callback([&line, options] { line.exit_code = Merge(*options); });
 }
 

@@ -74,6 +74,9 @@ option(SIDESTEP_WHOLE_TEST_PROGRAMS "ctest runs test programs, not each of their
 # Of the files of tests alone, such as checks of the compiler that are for what is tested.
 set(SIDESTEP_TEST_OPTIONS "" CACHE STRING "Compile the files of tests with these options too")
 
+find_program(SIDESTEP_LLD ld.lld)
+mark_as_advanced(SIDESTEP_LLD)
+
 # sidestep_test(<folder>/<name>_test [SOURCES <further file>...] DEPENDS <target>...
 #               [SLOW | HEAVY | THREADED])
 #
@@ -94,6 +97,9 @@ function(sidestep_test path)
   target_compile_features(${target} PRIVATE cxx_std_20)
   target_compile_options(${target} PRIVATE ${SIDESTEP_TEST_OPTIONS})
   sidestep_use_precompiled_headers(${target} sidestep_precompiled_test)
+  if(SIDESTEP_LLD)  # takes half the time, some two hundred times
+    target_link_options(${target} PRIVATE -fuse-ld=lld)
+  endif()
   get_filename_component(folder ${path} DIRECTORY)
   set(properties TIMEOUT 600)
   if(ARG_SLOW)

@@ -41,9 +41,8 @@ class TraceModel {
   /// Where the tip of the arm was, every kTrailStep_s from the first control sample until `t`
   /// (3 x N, m).
   Eigen::Matrix3Xd TipTrail(EpisodeTime t) const;
-  /// Where the tip will be from `t` to the plan's end, every kPlanStep_s, and at its end (3 x N, m);
-  /// empty if it is over.
-  /// Leaves the model at another moment: call MoveTo again.
+  /// Where the tip will be from `t` to the plan's end, every kPlanStep_s, and at its end (3 x N,
+  /// m); empty if it is over. Leaves the model at another moment: call MoveTo again.
   Eigen::Matrix3Xd TipPlan(const CycleRecord& cycle, EpisodeTime t);
 
  private:

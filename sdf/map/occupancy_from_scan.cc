@@ -13,7 +13,7 @@ ScanRasteriser::ScanRasteriser(const GridSpec& grid_W) {
 const OccupancyGrid& ScanRasteriser::Fill(const Scan& scan) {
   const Eigen::Index num_points = scan.p_CP.cols();
   const Eigen::Index num_same = CountKept(scan);
-  if (num_same == kept_p_CP_.cols()) {
+  if (num_same > 0 && num_same == kept_p_CP_.cols()) {
     for (const std::size_t cell : passing_) occupancy_.cells[cell] = 0;
     passing_ = Place(scan, num_same, num_points);
     return occupancy_;

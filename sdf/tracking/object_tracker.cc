@@ -34,6 +34,12 @@ constexpr double kTurnedShift = 1.6;
 // A piece of which less was seen in a scan is only remembered.
 constexpr double kLeastSeen = 0.1;
 
+// A thing that is seen to have left so much of where it was has moved.
+constexpr double kLeftShare = 0.5;
+// If it has come so far besides, and is so many times the least: noise leaves what it is at.
+constexpr double kSurelyMovedCells = 3;
+constexpr int kSurelyAThing = 10;
+
 // Things are in one piece if it fills so much of where each should be, and has so many cells of
 // what they have together.
 constexpr double kLeastShare = 0.5, kLeastOfAll = 0.7;
@@ -389,6 +395,7 @@ void ObjectTracker::ReopenVanished(const OccupancyGrid& occupancy, EpisodeTime t
     track.p_WStart = track.object.latest().p_WO;
     track.t_start = t;
     track.settle = options_.rest;
+    track.cells_at_start.clear();
   }
 }
 
@@ -444,7 +451,7 @@ ObjectTracker::Track* ObjectTracker::Begin(const View& view, EpisodeTime t) {
   track.settle = comes_out ? options_.peek : options_.settle;
   // What has come is not at rest because it was just seen.
   if (!once_free_.empty() && MayHaveCome(component)) track.settle = options_.rest;
-  track.num_cells_at_start = component.cells.size();
+  track.cells_at_start = component.cells;
   TakeShape(track, component);
   return &track;
 }
@@ -487,13 +494,17 @@ void ObjectTracker::Classify(Track& track, const View& view, EpisodeTime t) {
   const Eigen::Vector3d& p_WO = track.object.latest().p_WO;
   bool rests = false;
   if (track.state == State::kNew) {
-    if ((p_WO - track.p_WStart).norm() >= moved_m && MayHaveCome(component)) {
+    if (track.cells_at_start.empty()) track.cells_at_start = component.cells;
+    const double way_m = (p_WO - track.p_WStart).norm();
+    if ((way_m >= moved_m && MayHaveCome(component)) ||
+        (way_m >= kSurelyMovedCells * grid_.cell_m && HasLeft(track, component))) {
       track.state = State::kMoving;
       TakeShape(track, component);  // now with its field
       Note(track_event::kMoved, track, t);
     } else {
       // What is still coming out from behind something has not been seen to rest.
-      const bool is_growing = IsPartly(view) && component.cells.size() > track.num_cells_at_start;
+      const bool is_growing =
+          IsPartly(view) && component.cells.size() > track.cells_at_start.size();
       rests =
           t - track.t_start >= (is_growing ? std::max(track.settle, options_.rest) : track.settle);
     }
@@ -519,6 +530,18 @@ bool ObjectTracker::MayHaveCome(const Component& component) const {
   const auto count = std::count_if(component.cells.begin(), component.cells.end(),
                                    [&](std::size_t cell) { return once_free_[cell] != 0; });
   return count >= options_.least_cells;
+}
+
+// What comes from where nobody could see need not come to where nothing was; but it goes.
+bool ObjectTracker::HasLeft(const Track& track, const Component& component) const {
+  const std::vector<std::size_t>& before = track.cells_at_start;
+  const auto least = static_cast<std::size_t>(kSurelyAThing * options_.least_cells);
+  if (before.size() < least || component.cells.size() < least) return false;
+  const auto count = std::count_if(before.begin(), before.end(), [&](std::size_t cell) {
+    return seen_[cell] != 0 &&
+           !std::binary_search(component.cells.begin(), component.cells.end(), cell);
+  });
+  return static_cast<double>(count) >= kLeftShare * static_cast<double>(before.size());
 }
 
 Sighting ObjectTracker::See(EpisodeTime t, const Eigen::Vector3d& p_WO) const {

@@ -69,8 +69,9 @@ struct Sight {
 
 /// Follows the things in a stream of occupancy grids, and tells what moves from what does not.
 ///
-/// Each thing is new, moving or resting. A new one is static until it has moved by most of a cell;
-/// if it has not within `settle`, it rests: its cells become background. A resting thing that
+/// Each thing is new, moving or resting. A new one is static until it has moved by most of a cell,
+/// to where a camera had seen nothing before, or has left most of the cells where it was; if it has
+/// not within `settle`, it rests: its cells become background. A resting thing that
 /// loses cells is new again, with its past; a moving one that stays for `rest` rests. In the
 /// foreground, 26-connected components are associated with the known things, nearest pair first and
 /// one to one, by the distance to where a thing should be by now, within a gate.
@@ -117,11 +118,11 @@ class ObjectTracker {
   struct Track {
     TrackedObject object;
     State state = State::kNew;
-    Eigen::Vector3d p_WStart;               // where it was when it was new
-    EpisodeTime t_start;                    // since when it is new
-    HorizonOffset settle;                   // how long it may stay so
-    std::size_t num_cells_at_start = 0;     // of its first view
-    std::array<int, 3> extent = {0, 0, 0};  // of its shape, in cells
+    Eigen::Vector3d p_WStart;                 // where it was when it was new
+    EpisodeTime t_start;                      // since when it is new
+    HorizonOffset settle;                     // how long it may stay so
+    std::vector<std::size_t> cells_at_start;  // of its first view since then, ascending
+    std::array<int, 3> extent = {0, 0, 0};    // of its shape, in cells
     std::size_t num_cells = 0;
     bool cut_off = false;                         // by the grid's border: there may be more of it
     std::vector<std::array<int, 3>> shape_cells;  // of what moves, from its first corner
@@ -182,6 +183,7 @@ class ObjectTracker {
   void Classify(Track& track, const View& view, EpisodeTime t);
   // Whether what is filled there can have come from elsewhere.
   bool MayHaveCome(const Component& component) const;
+  bool HasLeft(const Track& track, const Component& component) const;
   void Miss(Track& track, EpisodeTime t);
   void GiveUp(EpisodeTime t);
 

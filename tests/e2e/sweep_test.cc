@@ -13,6 +13,7 @@
 
 #include "sidestep/bench/database/run_database.h"
 #include "sidestep/bench/sweep/shard_file.h"
+#include "sidestep/core/csv.h"
 #include "tests/support/bytes_of.h"
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
@@ -55,11 +56,14 @@ class SweepTest : public ::testing::Test {
     EXPECT_EQ(finished.exit_code, 0) << finished.err;
     return finished.out;
   }
-  // Of the shard of a sweep that is not divided.
-  long NumLinesOf(const std::string& out) const {
-    const fs::path shard = fs::path(OutOf(out)) / "shards/1-of-1.rows";
-    const std::string rows = fs::exists(shard) ? BytesOf(shard) : "";
-    return std::count(rows.begin(), rows.end(), '\n');
+  // How many are finished of a sweep that is not divided.
+  int NumRowsOf(const std::string& out) const {
+    std::ifstream stream(fs::path(OutOf(out)) / "shards/1-of-1.rows");
+    int count = 0;
+    for (std::string line; std::getline(stream, line) && !stream.eof();) {
+      count += line.find("\tsession\t") == std::string::npos ? 1 : 0;
+    }
+    return count;
   }
   // The processes whose command line holds `text`.
   static std::vector<int> ProcessesOf(const std::string& text) {
@@ -115,10 +119,11 @@ TEST_F(SweepTest, ComesToTheSameResultsHoweverItIsDividedAndWhoeverIsKilled) {
   int kills = 0;
   for (bool is_done = false; !is_done;) {
     Running running({SIDESTEP_PROGRAM, "sweep", "run", file_, "--out", OutOf("killed"), "-j", "2"});
+    for (int wait = 0; wait < 500 && ProcessesOf(OutOf("killed")).empty(); ++wait) usleep(10'000);
     for (int i = 0; i < 4; ++i) {
-      const auto lines = NumLinesOf("killed");
+      const int rows = NumRowsOf("killed");
       std::vector<int> processes = ProcessesOf(OutOf("killed"));
-      for (int wait = 0; !processes.empty() && NumLinesOf("killed") == lines; ++wait) {
+      for (int wait = 0; !processes.empty() && NumRowsOf("killed") == rows; ++wait) {
         ASSERT_LT(wait, 6000) << "nothing is done for minutes";
         usleep(10'000);
         processes = ProcessesOf(OutOf("killed"));
@@ -139,7 +144,7 @@ TEST_F(SweepTest, ComesToTheSameResultsHoweverItIsDividedAndWhoeverIsKilled) {
 TEST_F(SweepTest, FinishesWhatIsInFlightWhenItIsStoppedAndGoesOnFromThere) {
   {
     Running running({SIDESTEP_PROGRAM, "sweep", "run", file_, "--out", OutOf("out"), "-j", "1"});
-    for (int i = 0; i < 3000 && NumLinesOf("out") < 4; ++i) usleep(10'000);
+    for (int i = 0; i < 3000 && NumRowsOf("out") < 3; ++i) usleep(10'000);
     running.Signal(SIGINT);
     const Finished finished = running.Finish();
     EXPECT_EQ(finished.exit_code, 1);
@@ -255,6 +260,39 @@ TEST_F(SweepTest, KeepsTheTracesThatAreAskedForAlsoAfterwards) {
     ++kept;
   }
   EXPECT_GT(kept, 0);
+}
+
+TEST_F(SweepTest, IsReadByPythonAsTheExampleSays) {
+  if (RunProgram({"/usr/bin/python3", "-c", "import pandas, h5py"}).exit_code != 0) {
+    GTEST_SKIP() << "needs Debian's python3-pandas and python3-h5py";
+  }
+  Write(std::string(kSweep) + "traces: all\n");
+  ASSERT_EQ(Sweep("run", "out", {"--csv"}).exit_code, 0);
+  const Finished example =
+      RunProgram({"/usr/bin/python3", SIDESTEP_SOURCE_DIR "/examples/sweeps/read_results.py",
+                  DatabaseOf("out")});
+  EXPECT_EQ(example.exit_code, 0) << example.err;
+  EXPECT_THAT(example.out, HasSubstr("walkway_behaviours prediction"));
+  EXPECT_THAT(example.out, HasSubstr(" ticks of 7 joints"));
+}
+
+TEST_F(SweepTest, WritesACsvOfEveryRow) {
+  ASSERT_EQ(Sweep("run", "out", {"--csv"}).exit_code, 0);
+  const CsvFile csv = ReadCsv(OutOf("out") + "/results.csv");
+  const bench::RunDatabase database(DatabaseOf("out"));
+  EXPECT_EQ(csv.columns, database.columns());
+  ASSERT_EQ(csv.rows.size(), static_cast<std::size_t>(kNumRuns));
+  const auto column = std::find(csv.columns.begin(), csv.columns.end(), "goal_error_rad");
+  const auto c = static_cast<std::size_t>(column - csv.columns.begin());
+  bench::SqlStatement rows = database.Select("goal_error_rad");
+  for (const CsvRow& line : csv.rows) {
+    ASSERT_TRUE(rows.Step());
+    if (rows.IsNull(0)) {
+      EXPECT_EQ(line.fields[c], "");
+    } else {
+      EXPECT_EQ(std::stod(line.fields[c]), rows.Number(0));
+    }
+  }
 }
 
 TEST_F(SweepTest, IsVerifiedBitForBit) {

@@ -184,6 +184,33 @@ TEST(AThingThatNobodyHasSeen, IsKnownToMoveSoonAfterItComesOutAndNotTakenForFurn
   }
 }
 
+// Where nothing was ever known to be free, nothing can be said to have come to.
+TEST(AThingThatComesFromWhereNobodyCouldSee, IsKnownToMoveWhenItHasLeftWhereItWas) {
+  constexpr double kSpeed_m_s = 0.8;
+  const std::vector<std::uint8_t> nowhere(RoomGrid().num_cells(), 0);
+  const SceneBox moving = MovingBox({0.2, 0.4, 0.4}, {-0.7, 0.4, 0.24}, {kSpeed_m_s, 0, 0});
+  const SceneBox board = StillBox({1.6, 0.04, 0.32}, {0.1, -0.2, 0.2});
+  ObjectTrackerOptions options = Coasting(1);
+  options.least_cells = 6;
+  ObjectTracker tracker(RoomGrid(), options);
+  for (int frame = 0; frame < 24; ++frame) {
+    const EpisodeTime t(frame / kRate_hz);
+    OccupancyGrid map = Rasterise({moving, board}, RoomGrid(), t);
+    std::vector<std::uint8_t> seen(map.cells.size(), 1);
+    for (std::size_t cell = 0; cell < map.cells.size(); ++cell) {
+      const Eigen::Vector3d p_W = RoomGrid().CenterOf(cell);
+      // The box comes out of the dark; the board, which is still, comes to light as quickly.
+      const bool is_dark =
+          p_W.y() > 0 ? p_W.x() < -0.54 : p_W.x() > -0.6 + kSpeed_m_s * t.seconds();
+      if (is_dark) map.cells[cell] = seen[cell] = 0;
+    }
+    tracker.Update(map, t, {seen, nowhere});
+  }
+  const Objects objects = tracker.MovingObjects();
+  ASSERT_EQ(objects.size(), 1u);
+  EXPECT_GT(objects[0]->latest().p_WO.y(), 0);
+}
+
 // The scan of such a camera: a point in each filled cell that it sees, and rays that pass through
 // each free one.
 Scan ScanOf(const CellCamera& camera, EpisodeTime t) {
