@@ -53,7 +53,6 @@ bench::ReportReplays MakeReplays(const bench::RunDatabase& database,
     if (paths.empty()) continue;
     ReplayOptions replay;
     replay.titles = titles;
-    replay.field_points = 48;
     const render::ReplaySet set =
         MakeReplaySet(ReadTraces(paths), FindDataPaths(options.models), replay);
     std::string title = "seed " + std::to_string(runs.seed[of]);
@@ -102,6 +101,8 @@ int Report(const ReportOptions& options) {
   }
   request.over = options.over;
   request.database = ShellQuoted(options.database);
+  const std::string folder = std::filesystem::path(options.database).parent_path().string();
+  if (!folder.empty()) request.folder = ShellQuoted(folder + "/");
   const bench::ReportSource source(database, request);
   const bench::SweepReport report = source.Make(MakeReplays(database, source, options));
   WriteFile(options.out, report.html);

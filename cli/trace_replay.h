@@ -11,7 +11,7 @@ namespace sidestep::cli {
 
 struct ReplayOptions {
   std::vector<std::string> titles;  ///< one a trace, or none: what its planner was told
-  int field_points = 64;            ///< of the planner's field along the workspace's longest side
+  int field_points = 48;            ///< of the planner's field along the workspace's longest side
 };
 
 /// What a page shows of these traces. The planner's spheres and its field need the robot's own

@@ -38,7 +38,7 @@ struct Figure {
   int panel_width_px = 560, panel_height_px = 380;
 };
 
-/// Of the palette, as #rrggbb.
+/// Of the palette, as SVG and gnuplot write it.
 std::string FigureColor(int color);
 
 /// The figure as a gnuplot script, data included, that writes `stem`.svg and `stem`.png.

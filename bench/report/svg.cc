@@ -15,7 +15,7 @@
 namespace sidestep::bench {
 namespace {
 
-constexpr double kLeft = 62, kRight = 16, kBottom = 46, kKeyLine = 20, kTitle = 22;
+constexpr double kLeft = 62, kRight = 16, kBottom = 54, kKeyLine = 20, kTitle = 22;
 constexpr double kLetter = 7.1;  // about as wide as one of 13 px
 constexpr std::size_t kLongestName = 28;
 
@@ -234,7 +234,7 @@ class SvgPanel {
     for (std::size_t i = 0; i < panel_.x_names.size(); i += every) {
       // In two rows, if one is too narrow.
       const bool is_lower = widest > room * static_cast<double>(every) && (i / every) % 2 == 1;
-      Text(x_.At(static_cast<double>(i)), bottom + (is_lower ? 29 : 16), "middle", "--quiet",
+      Text(x_.At(static_cast<double>(i)), bottom + (is_lower ? 31 : 17), "middle", "--quiet",
            Shortened(panel_.x_names[i]));
     }
   }

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <set>
@@ -122,8 +123,8 @@ class Page {
     std::vector<Question> questions;
     const auto add = [&](const Question& question) {
       const auto same = [&](const Question& other) {
-        return other.factor == question.factor && other.of == question.of &&
-               other.with == question.with;
+        return other.factor == question.factor &&
+               std::minmax(other.of, other.with) == std::minmax(question.of, question.with);
       };
       if (question.of == question.with || static_cast<int>(questions.size()) >= kMostComparisons ||
           std::any_of(questions.begin(), questions.end(), same)) {
@@ -133,14 +134,15 @@ class Page {
     };
     if (question_.factor < 0) return questions;
     add(question_);
-    for (int of = 0; of < static_cast<int>(NumLevels(runs_, question_.factor)); ++of) {
-      add({question_.factor, of, question_.with});
-    }
-    for (int factor = 0; factor < static_cast<int>(runs_.factors.size()); ++factor) {
-      for (int of = 1; of < static_cast<int>(std::min(NumLevels(runs_, factor), kMostGroups));
-           ++of) {
-        add({factor, of, 0});
+    const auto add_pairs = [&](int factor) {
+      const int count = static_cast<int>(std::min(NumLevels(runs_, factor), kMostGroups));
+      for (int of = 1; of < count; ++of) {
+        for (int with = 0; with < of; ++with) add({factor, of, with});
       }
+    };
+    add_pairs(question_.factor);
+    for (int factor = 0; factor < static_cast<int>(runs_.factors.size()); ++factor) {
+      if (factor != question_.factor) add_pairs(factor);
     }
     return questions;
   }
@@ -413,6 +415,15 @@ class Page {
     ListFailures();
   }
 
+  // What replays a kept trace. Names of traces are plain, in databases of ours.
+  std::string ViewCommand(const std::string& trace) const {
+    const bool is_plain = std::all_of(trace.begin(), trace.end(), [](unsigned char c) {
+      return std::isalnum(c) != 0 || c == '/' || c == '_' || c == '-' || c == '.';
+    });
+    if (trace.empty() || !is_plain) return "";
+    return CommandHtml("sidestep view " + request_.folder + trace);
+  }
+
   void ListFailures() {
     std::string factors;
     std::vector<std::string> head = {"run", "outcome", "touched, or why"};
@@ -423,7 +434,7 @@ class Page {
     head.insert(head.end(), {"seed", "clearance [mm]", "again"});
     SqlStatement run = database_.sql().Prepare(
         "SELECT id, outcome, coalesce(nullif(touched, ''), nullif(error, ''), ''), seed, "
-        "min_clearance_m, command" +
+        "min_clearance_m, command, trace" +
         factors +
         " FROM results WHERE outcome <> 'goal' ORDER BY outcome, min_clearance_m, id LIMIT " +
         std::to_string(kMostFailuresListed));
@@ -436,11 +447,11 @@ class Page {
              "<span class=\"outcome-" + Escaped(outcome) + "\">" + Escaped(outcome) + "</span>",
              Escaped(run.Text(2))};
       for (std::size_t f = 0; f < runs_.factors.size(); ++f) {
-        row.push_back(Escaped(run.Text(6 + static_cast<int>(f))));
+        row.push_back(Escaped(run.Text(7 + static_cast<int>(f))));
       }
       row.push_back(run.Text(3));
       row.push_back(FiniteText("{:.1f}", 1e3 * run.Number(4), "–"));
-      row.push_back(run.IsNull(5) ? "–" : CommandHtml(run.Text(5)));
+      row.push_back((run.IsNull(5) ? "–" : CommandHtml(run.Text(5))) + ViewCommand(run.Text(6)));
     }
     classes.resize(head.size());
     classes.back() = "text";

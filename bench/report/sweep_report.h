@@ -15,8 +15,10 @@ struct ReportRequest {
   /// Two levels of a factor, in words; empty: what the database's sweep asks, or the first there
   /// is.
   std::string factor, of, with;
-  std::string over;      ///< the factor along which they are shown; empty: chosen
-  std::string database;  ///< its name, for commands that the page tells
+  std::string over;  ///< the factor along which they are shown; empty: chosen
+  /// The database's name and its folder with a `/` at the end (or nothing), as a shell takes them:
+  /// for commands that the page tells.
+  std::string database, folder;
 };
 
 /// A run that is replayed in the page.

@@ -73,6 +73,8 @@ const char* ToString(ReplayShape shape) {
       return "cylinder";
     case ReplayShape::kBox:
       return "box";
+    case ReplayShape::kMesh:
+      return "mesh";
   }
   return "";
 }
@@ -114,10 +116,22 @@ Json GeomsJson(const Replay& replay) {
                      {"size", Numbers(geom.size_m)},
                      {"rgba", geom.rgba},
                      {"role", ToString(geom.role)},
+                     {"mesh", geom.mesh},
                      {"body", geom.body},
                      {"pose", pose}});
   }
   return geoms;
+}
+
+Json MeshesJson(const Replay& replay) {
+  Json meshes = Json::array();
+  for (const ReplayMesh& mesh : replay.meshes) {
+    const auto floats = mesh.vertices_m.reshaped();
+    const auto corners = mesh.triangles.reshaped();
+    meshes.push_back({{"vertices", Floats(std::vector<float>(floats.begin(), floats.end()))},
+                      {"triangles", std::vector<int>(corners.begin(), corners.end())}});
+  }
+  return meshes;
 }
 
 Json FramesJson(const Replay& replay) {
@@ -209,6 +223,7 @@ Json ToJson(const Replay& replay) {
           {"facts", facts},
           {"end_s", replay.end_s},
           {"geoms", GeomsJson(replay)},
+          {"meshes", MeshesJson(replay)},
           {"frames", FramesJson(replay)},
           {"spheres", SpheresJson(replay)},
           {"motion", MotionJson(replay)},

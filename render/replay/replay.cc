@@ -32,6 +32,8 @@ std::optional<ReplayShape> ShapeOf(int mujoco_type) {
       return ReplayShape::kCylinder;
     case mjGEOM_BOX:
       return ReplayShape::kBox;
+    case mjGEOM_MESH:
+      return ReplayShape::kMesh;
     default:
       return std::nullopt;  // no trace holds any other
   }
@@ -82,6 +84,7 @@ class Shown {
                  : is_obstacle          ? ReplayRole::kObstacle
                  : trace_.IsRobot(geom) ? ReplayRole::kRobot
                                         : ReplayRole::kScenery;
+    if (shown.shape == ReplayShape::kMesh) shown.mesh = MeshOf(model.geom_dataid[geom], replay);
     const int body = model.geom_bodyid[geom];
     if (NeverMoves(model, body)) {
       shown.X_BG = sim::GeomPose(trace_.data(), geom);
@@ -94,7 +97,20 @@ class Shown {
     replay->geoms.push_back(shown);
   }
 
+  int MeshOf(int id, Replay* replay) {
+    const auto [known, is_new] = meshes_.try_emplace(id, static_cast<int>(replay->meshes.size()));
+    if (!is_new) return known->second;
+    const mjModel& model = trace_.model();
+    ReplayMesh& mesh = replay->meshes.emplace_back();
+    mesh.vertices_m = Eigen::Map<const Eigen::Matrix3Xf>(
+        model.mesh_vert + 3 * model.mesh_vertadr[id], 3, model.mesh_vertnum[id]);
+    mesh.triangles = Eigen::Map<const Eigen::Matrix3Xi>(
+        model.mesh_face + 3 * model.mesh_faceadr[id], 3, model.mesh_facenum[id]);
+    return known->second;
+  }
+
   const TraceModel& trace_;
+  std::map<int, int> meshes_;  // of a mesh of the model, in Replay::meshes
   std::map<int, int> places_;  // of a body, in bodies_
   std::vector<int> bodies_;
 };

@@ -17,7 +17,7 @@ namespace sidestep::render {
 
 // What is shown of a trace in a browser, as plain values; times are seconds of the episode.
 
-enum class ReplayShape { kPlane, kSphere, kCapsule, kEllipsoid, kCylinder, kBox };
+enum class ReplayShape { kPlane, kSphere, kCapsule, kEllipsoid, kCylinder, kBox, kMesh };
 /// What a thing is part of.
 enum class ReplayRole {
   kScenery,
@@ -32,8 +32,15 @@ struct ReplayGeom {
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();  ///< as MuJoCo's geom_size
   std::array<float, 4> rgba = {};
   ReplayRole role = ReplayRole::kScenery;
-  int body = -1;  ///< of Replay::poses; -1: it never moves
+  int mesh = -1;  ///< of Replay::meshes, for a mesh
+  int body = -1;  ///< of Replay::X_WB; -1: it never moves
   Pose X_BG;      ///< in its body; of what never moves, in W
+};
+
+/// Triangles, in the frame of the geoms that show them.
+struct ReplayMesh {
+  Eigen::Matrix3Xf vertices_m;
+  Eigen::Matrix3Xi triangles;  ///< of vertices, by their columns
 };
 
 /// Where the arm's tip was to go by a plan, from when it took effect.
@@ -68,6 +75,7 @@ struct Replay {
   std::vector<std::pair<std::string, std::string>> facts;
   double end_s = 0, step_s = 0;  ///< of the frames: step k is at k times step_s
   std::vector<ReplayGeom> geoms;
+  std::vector<ReplayMesh> meshes;
   std::vector<std::vector<Pose>> X_WB;     ///< of each frame, of each body that moves
   std::vector<double> obstacle_speed_m_s;  ///< of each frame
   std::vector<ReplayStatus> statuses;

@@ -75,6 +75,7 @@ class ReportTest : public ::testing::Test {
       return row;
     }
     if (fails) row.touched = options.touched;
+    if (fails) row.trace = "traces/" + knowledge + std::to_string(seed) + ".h5";
     row.metrics["min_clearance_m"] = (fails ? -0.01 : 0.1) + 0.001 * seed;
     if (!fails) row.metrics["time_to_goal_s"] = 2 + 0.1 * seed + (knowledge == "ahead" ? 0.5 : 0);
     row.subject.charged_latency_s = 0.1;
@@ -111,6 +112,7 @@ TEST_F(ReportTest, AnswersWhatTheSweepAsksInOneSentence) {
                 "p = 0.25."));
   EXPECT_THAT(report.html, HasSubstr("18 runs of 99 planned, so far: 5 collision, 13 goal."));
   EXPECT_EQ(Count(report.html, "sidestep run hall --seed"), 5u) << "one a collision";
+  EXPECT_THAT(report.html, HasSubstr("sidestep view traces/now3.h5"));
 }
 
 TEST_F(ReportTest, ComparesWhatIsAskedOfItAndNothingThatIsNotThere) {
@@ -149,6 +151,25 @@ TEST_F(ReportTest, LeavesOutPairsOfWhichARunFailedAndSaysSo) {
   const std::string html = source.Make({}).html;
   EXPECT_THAT(html, HasSubstr("1 pairs are left out, because one of their runs failed."));
   EXPECT_THAT(html, HasSubstr("no such &lt;thing&gt;"));
+}
+
+TEST_F(ReportTest, IsAPageEvenOfRunsThatAllFailed) {
+  const std::string path = (folder_.path() / "failed.db").string();
+  RunTableHead head;
+  head.factors = FactorColumnsOf({{"knowledge", {"now", "ahead"}}});
+  RunDatabaseWriter writer(path, head);
+  for (const char* const knowledge : {"now", "ahead"}) {
+    NumberedRun run;
+    run.id = knowledge == std::string("now") ? 1 : 2;
+    run.scenario = "hall";
+    writer.Add(run, FailedRow({{"knowledge", knowledge}}, "it is a trap"));
+  }
+  writer.Commit();
+  const RunDatabase database(path);
+  const SweepReport report = ReportSource(database, {}).Make({});
+  EXPECT_THAT(report.html, HasSubstr("it is a trap"));
+  EXPECT_THAT(report.answer, HasSubstr("in 0 of 0 runs"));
+  EXPECT_THAT(report.html, Not(HasSubstr("nan")));
 }
 
 TEST_F(ReportTest, LetsNoTextOfTheDatabaseBecomeMarkup) {
@@ -224,7 +245,7 @@ TEST(ToSvg, PutsPointsWhereTheirNumbersAre) {
   EXPECT_EQ(Count(svg, "<circle"), 2u) << "what is no number is left out";
   EXPECT_THAT(svg, HasSubstr("speed &lt;m/s&gt;"));
   EXPECT_THAT(svg, HasSubstr("<title>a: 10, 100</title>"));
-  EXPECT_THAT(svg, HasSubstr("cy=\"254.0\""));  // 0 stands on the axis, 46 px above the edge
+  EXPECT_THAT(svg, HasSubstr("cy=\"246.0\""));  // 0 stands on the axis, 54 px above the edge
   EXPECT_EQ(svg, ToSvg(panel, SvgPlace::kFile, 400, 300));
 }
 

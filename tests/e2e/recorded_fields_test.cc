@@ -77,6 +77,22 @@ TEST_P(RecordedFields, AreToTheBitWhatThePlannerSaw) {
   }
 }
 
+TEST(RecordedFieldsOfOtherSensors, AreNotMadeAgainFromWhatCamerasAndTagsSaw) {
+  record::Recording recording;
+  recording.cycles.resize(1);
+  recording.observations.resize(1);
+  for (const char* const name : {"walkway_depth", "walkway_tags"}) {
+    const scenarios::Scenario scenario = scenarios::LoadScenario(
+        std::string(SIDESTEP_SOURCE_DIR "/scenarios/") + name + ".yaml", {});
+    EXPECT_NE(bench::WhyNoRecordedFields(recording, scenario), "") << name;
+  }
+  const scenarios::Scenario scenario =
+      scenarios::LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/hsr_walkway.yaml", {});
+  EXPECT_EQ(bench::WhyNoRecordedFields(recording, scenario), "");
+  recording.observations[0].changed_cells = {std::int64_t{1} << 40};
+  EXPECT_NE(bench::WhyNoRecordedFields(recording, scenario), "");
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Walkway, RecordedFields,
     ::testing::Values(Case{"static", "static", {}},

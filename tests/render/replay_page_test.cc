@@ -93,6 +93,35 @@ TEST_F(SampleReplay, PutsEveryGeomWhereMujocoDoesInEveryFrame) {
   }
 }
 
+TEST_F(SampleReplay, HasTheCornersOfMeshesWhereTheModelGivesThem) {
+  recording_ = MakeSampleRecording({});
+  const auto put = [&](const std::string& before, const std::string& what) {
+    recording_.model_xml.insert(recording_.model_xml.find(before), what);
+  };
+  put("</asset>", R"(<mesh name="wedge" vertex="0 0 0 0.4 0 0 0 0.3 0 0 0 0.2"/>)");
+  put("<body name=\"near_table\"",
+      R"(<body name="rock" pos="1 2 0.5" euler="0 0 90"><geom type="mesh" mesh="wedge"/></body>)");
+  model_.emplace(recording_, "sample");
+  const Replay replay = MakeReplay(*model_, {});
+  ASSERT_EQ(replay.meshes.size(), 1u);
+  const auto geom = std::find_if(replay.geoms.begin(), replay.geoms.end(),
+                                 [](const ReplayGeom& g) { return g.shape == ReplayShape::kMesh; });
+  ASSERT_NE(geom, replay.geoms.end());
+  // Turned by a quarter about z, at (1, 2, 0.5).
+  const ReplayMesh& mesh = replay.meshes.front();
+  for (const Eigen::Vector3d& corner : {Eigen::Vector3d(1, 2, 0.5), Eigen::Vector3d(1, 2.4, 0.5),
+                                        Eigen::Vector3d(0.7, 2, 0.5), Eigen::Vector3d(1, 2, 0.7)}) {
+    double nearest_m = 1;
+    for (Eigen::Index v = 0; v < mesh.vertices_m.cols(); ++v) {
+      const Eigen::Vector3d p_W = geom->X_BG * mesh.vertices_m.col(v).cast<double>().eval();
+      nearest_m = std::min(nearest_m, (p_W - corner).norm());
+    }
+    EXPECT_LT(nearest_m, 1e-6) << corner.transpose();
+  }
+  EXPECT_EQ(mesh.triangles.cols(), 4);
+  EXPECT_LT(mesh.triangles.maxCoeff(), mesh.vertices_m.cols());
+}
+
 TEST_F(SampleReplay, EndsWithTheTraceAndSaysWhatTheVideoSays) {
   const Replay replay = Make({.contact = true});
   const double frames = static_cast<double>(replay.X_WB.size() - 1);

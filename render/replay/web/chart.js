@@ -52,6 +52,7 @@ const ReplayChart = (() => {
       let low = 0, high = 0.05;
       for (const {clearance: {d}, margin} of this.traces) {
         for (const value of d) {
+          if (!Number.isFinite(value)) continue;
           low = Math.min(low, value);
           high = Math.max(high, value);
         }
@@ -115,12 +116,18 @@ const ReplayChart = (() => {
         add(this.svg, "rect", {x: this.x(begin), width: Math.max(2, this.x(last) - this.x(begin)),
                                y: TOP, height: this.height - TOP - BOTTOM, class: "touch"});
       }
-      let path = "";
+      let path = "", isBroken = true;
       for (let i = 0; i < t.length; ++i) {
-        path += `${i ? "L" : "M"}${this.x(t[i]).toFixed(1)} ${this.y(d[i]).toFixed(1)}`;
+        if (!Number.isFinite(d[i])) {
+          isBroken = true;
+          continue;
+        }
+        path += `${isBroken ? "M" : "L"}${this.x(t[i]).toFixed(1)} ${this.y(d[i]).toFixed(1)}`;
+        isBroken = false;
       }
       add(this.svg, "path", {d: path, fill: "none", stroke: color, "stroke-width": 1.8});
       for (const [at, what, kind] of trace.marks) {
+        if (kind === "track") continue;  // there may be many: they are listed
         const mark = add(this.svg, "circle", {cx: this.x(at), cy: this.height - BOTTOM, r: 3.5,
                                               class: "mark " + kind});
         add(mark, "title", {}, `${at.toFixed(2)} s: ${what}`);
@@ -143,8 +150,9 @@ const ReplayChart = (() => {
       this.cursor.setAttribute("transform", `translate(${this.x(Math.min(t, this.end))} 0)`);
       this.traces.forEach((trace, i) => {
         const d = t <= trace.end + 1e-9 ? trace.clearanceAt(t) : null;
-        this.dots[i].setAttribute("visibility", d === null ? "hidden" : "visible");
-        if (d === null) return;
+        const isKnown = Number.isFinite(d);
+        this.dots[i].setAttribute("visibility", isKnown ? "visible" : "hidden");
+        if (!isKnown) return;
         this.dots[i].setAttribute("cx", this.x(t));
         this.dots[i].setAttribute("cy", this.y(d));
       });

@@ -118,6 +118,8 @@ const ReplayData = (() => {
       this.facts = data.facts;
       this.end = data.end_s;
       this.geoms = data.geoms;
+      this.meshes = data.meshes.map(
+          ({vertices, triangles}) => ({vertices: floats(vertices), triangles}));
       this.frames = {
         step: data.frames.step_s, count: data.frames.count, bodies: data.frames.bodies,
         poses: floats(data.frames.poses), obstacleSpeed: floats(data.frames.obstacle_speed),
@@ -147,6 +149,12 @@ const ReplayData = (() => {
       const before = Math.min(Math.floor(at), this.frames.count - 1);
       return {before, after: Math.min(before + 1, this.frames.count - 1), share: at - before};
     }
+
+    get movesObstacles() {
+      return this.geoms.some((geom) => geom.body >= 0 && geom.role === "obstacle");
+    }
+
+    obstacleSpeedAt(t) { return this.frames.obstacleSpeed[this.frameAt(t).before]; }
 
     planAt(t) {
       const i = lastUntil(this.plans.length, (k) => this.plans[k].effect, t);

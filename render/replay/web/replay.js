@@ -49,11 +49,12 @@ function mountReplay(root, data, options = {}) {
     const swatch = make("span", {class: "swatch", style: `background:${LINE_COLORS[i % 6]}`});
     const title = make("div", {class: "panel-title"}, swatch, make("b", {}, trace.title),
                        make("span", {class: "explanation"}, trace.explanation));
-    const status = make("div", {class: "panel-status"});
+    const words = make("span"), speed = make("span", {class: "speed"});
+    const status = make("div", {class: "panel-status"}, words, speed);
     const view = make("div", {class: "panel-view"});
     const element = make("div", {class: "panel"}, title, view, status);
     if (trace.place) view.append(make("span", {class: "place"}, trace.place));
-    return {element, view, status, trace};
+    return {element, view, status, words, speed, trace};
   });
   const stage = make("div", {class: "stage", "data-count": String(traces.length)}, canvas,
                      ...panels.map((panel) => panel.element));
@@ -214,9 +215,12 @@ function mountReplay(root, data, options = {}) {
     clock.textContent = `${state.t.toFixed(2)} s`;
     slider.value = state.t;
     chart.moveTo(state.t);
-    for (const {status, trace} of panels) {
+    for (const {status, words, speed, trace} of panels) {
       const {text, mood} = trace.statusAt(state.t);
-      status.textContent = text + (state.t > trace.end + 1e-9 ? " (finished)" : "");
+      const isOver = state.t > trace.end + 1e-9;
+      words.textContent = text;
+      speed.textContent = isOver ? "finished"
+          : trace.movesObstacles ? `obstacle ${trace.obstacleSpeedAt(state.t).toFixed(2)} m/s` : "";
       status.dataset.mood = mood;
     }
     tellField();

@@ -33,6 +33,16 @@ const ReplayScene = (() => {
     }
   }
 
+  // With flat faces: each triangle has corners of its own.
+  function meshGeometry({vertices, triangles}) {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(vertices, 3));
+    geometry.setIndex(triangles);
+    const flat = geometry.toNonIndexed();
+    flat.computeVertexNormals();
+    return flat;
+  }
+
   // Squares of half a metre.
   function floorTexture(tones) {
     const canvas = document.createElement("canvas");
@@ -198,7 +208,8 @@ const ReplayScene = (() => {
         this.scene.add(this.bodies[i]);
       }
       for (const geom of this.trace.geoms) {
-        const geometry = geometryOf(geom.shape, geom.size);
+        const geometry = geom.shape === "mesh" ? meshGeometry(this.trace.meshes[geom.mesh])
+                                               : geometryOf(geom.shape, geom.size);
         const mesh = geom.role === "contact_box" ? this.glass(geometry) : this.solid(geom, geometry);
         const [x, y, z, qx, qy, qz, qw] = geom.pose;
         mesh.position.set(x, y, z);
