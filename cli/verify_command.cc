@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "sidestep/bench/database/run_database.h"
+#include "sidestep/bench/database/run_database_writer.h"
 #include "sidestep/bench/database/table_rows.h"
 #include "sidestep/bench/process_pool.h"
 #include "sidestep/bench/sweep/shard_file.h"
@@ -164,7 +165,8 @@ class Verification {
     for (const auto& [metric, value] : row.metrics) {
       compare(metric, std::isfinite(value) ? ShortestText(value) : "");
     }
-    for (const auto& [key, value] : row.drawn) compare("drawn_" + key, ShortestText(value));
+    for (const auto& [key, value] : row.drawn)
+      compare(bench::DrawnColumn(key), ShortestText(value));
     return Joined(different, "; ");
   }
 
