@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "sidestep/bench/run_row.h"
-#include "sidestep/bench/study_page.h"
+#include "sidestep/bench/summary_page.h"
 
 namespace sidestep::bench {
 

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <exception>
 #include <functional>
-#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -11,7 +10,6 @@
 #include "sidestep/bench/metrics/registry.h"
 #include "sidestep/bench/result_file.h"
 #include "sidestep/bench/statistics.h"
-#include "sidestep/core/csv.h"
 #include "sidestep/core/number_text.h"
 
 namespace sidestep::bench {
@@ -57,11 +55,6 @@ RunRow MakeRow(const scenarios::Scenario& scenario, const Factors& factors,
   return row;
 }
 
-std::string NumberField(const std::map<std::string, double>& numbers, const std::string& name) {
-  const auto found = numbers.find(name);
-  return found == numbers.end() ? "" : CsvNumber(found->second);
-}
-
 }  // namespace
 
 RunSubject SubjectOf(const scenarios::Scenario& scenario) {
@@ -103,32 +96,6 @@ RunRow RunSearchRow(const scenarios::Scenario& scenario, const robot::RobotModel
     row.outcome = ToString(path.found ? Outcome::kGoal : Outcome::kCollision);
     row.metrics["min_clearance_m"] = path.clearance_m;
   });
-}
-
-std::string RunsCsv(const std::vector<RunRow>& rows) {
-  if (rows.empty()) return "";
-  std::set<std::string> drawn;
-  for (const RunRow& row : rows) {
-    for (const auto& [key, value] : row.drawn) drawn.insert(key);
-  }
-  std::vector<std::string> columns;
-  for (const auto& [factor, value] : rows.front().factors) columns.push_back(factor);
-  for (const std::string& key : drawn) columns.push_back("drawn." + key);
-  columns.insert(columns.end(), {"outcome", "error"});
-  for (const Metric& metric : Metrics()) columns.emplace_back(metric.name);
-  columns.insert(columns.end(), {"run", "trace", "command"});
-  CsvWriter csv(columns);
-  for (const RunRow& row : rows) {
-    std::vector<std::string> fields;
-    for (const auto& [factor, value] : row.factors) fields.push_back(value);
-    for (const std::string& key : drawn) fields.push_back(NumberField(row.drawn, key));
-    fields.insert(fields.end(), {row.outcome, row.error});
-    for (const Metric& metric : Metrics()) fields.push_back(NumberField(row.metrics, metric.name));
-    const bool was_run = !row.identity.build.empty();
-    fields.insert(fields.end(), {was_run ? RunId(row.identity) : "", row.trace, row.command});
-    csv.AddRow(fields);
-  }
-  return csv.text();
 }
 
 }  // namespace sidestep::bench

@@ -72,7 +72,4 @@ RecordedRun RunEpisodeRow(const scenarios::Scenario& scenario, const robot::Robo
 RunRow RunSearchRow(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
                     int max_guesses, const Factors& factors);
 
-/// All rows, with a column for each factor, each value that was drawn and each metric.
-std::string RunsCsv(const std::vector<RunRow>& rows);
-
 }  // namespace sidestep::bench

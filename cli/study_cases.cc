@@ -1,6 +1,10 @@
 #include "sidestep/cli/study_cases.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -18,23 +22,14 @@ namespace {
 constexpr const char* kSeed = "seed";
 constexpr const char* kSpeed = kSpeedFactor;
 
-// Every combination of `cases` with the values of one more factor.
-std::vector<bench::Factors> Cross(const std::vector<bench::Factors>& cases,
-                                  const std::string& factor,
-                                  const std::vector<std::string>& values) {
-  if (values.empty()) return cases;
+// Adds an axis, unless it has no values.
+void AddAxis(bench::Sweep& sweep, const std::string& name, const std::vector<std::string>& values) {
+  if (values.empty()) return;
   std::set<std::string> seen;
   for (const std::string& value : values) {
-    if (!seen.insert(value).second) throw InputError(factor, "'" + value + "' is given twice");
+    if (!seen.insert(value).second) throw InputError(name, "'" + value + "' is given twice");
   }
-  std::vector<bench::Factors> crossed;
-  for (const bench::Factors& one : cases) {
-    for (const std::string& value : values) {
-      crossed.push_back(one);
-      crossed.back()[factor] = value;
-    }
-  }
-  return crossed;
+  sweep.axes.push_back({name, values});
 }
 
 // The keys that --vary gives, each given once and by nothing else.
@@ -70,9 +65,28 @@ std::vector<std::string> ValuesOf(const std::string& factor, const char* flag,
   return {settings.extract(fixed).mapped()};
 }
 
+// What --set gives as the seed; it is no axis.
+std::optional<std::uint64_t> TakeSeed(const StudySpace& space, scenarios::Settings& settings) {
+  const auto fixed = settings.find(kSeed);
+  if (fixed == settings.end()) return {};
+  const std::string text = settings.extract(fixed).mapped();
+  if (space.episodes > 0) throw InputError("--set seed", "is what --episodes varies");
+  std::uint64_t seed = 0;
+  const char* const end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, seed);
+  if (parsed.ec != std::errc() || parsed.ptr != end) {
+    throw InputError("--set seed", "must be a whole number >= 0, is '" + text + "'");
+  }
+  return seed;
+}
+
+std::uint64_t SeedIn(const std::string& scenario_file) {
+  return scenarios::LoadScenario(scenario_file).seed;
+}
+
 }  // namespace
 
-std::vector<bench::Factors> StudyCases(const StudySpace& space, const DataPaths& paths) {
+bench::Sweep SweepOf(const StudySpace& space, const DataPaths& paths) {
   std::vector<VariedKeys> varied;
   for (const std::string& text : space.varied) varied.push_back(ParseVariedKeys(text));
   const std::set<std::string> varied_keys = CheckVaried(varied, space.settings);
@@ -80,9 +94,9 @@ std::vector<bench::Factors> StudyCases(const StudySpace& space, const DataPaths&
   if (settings.count(kSpeed) != 0) {
     throw InputError(std::string("--set ") + kSpeed, "is what --speed varies");
   }
-  std::vector<std::string> speeds, seeds;
+  const std::optional<std::uint64_t> fixed_seed = TakeSeed(space, settings);
+  std::vector<std::string> speeds;
   for (const double speed : space.speeds) speeds.push_back(scenarios::Number(speed));
-  for (int seed = 1; seed <= space.episodes; ++seed) seeds.push_back(std::to_string(seed));
   const auto& asked = space.knowledge;
   std::vector<std::string> knowledge = ValuesOf("knowledge", "--knowledge", asked, settings);
   if (std::find(knowledge.begin(), knowledge.end(), kSearch) != knowledge.end()) {
@@ -94,57 +108,26 @@ std::vector<bench::Factors> StudyCases(const StudySpace& space, const DataPaths&
   if (space.search > 0) knowledge.push_back(kSearch);
   const std::vector<std::string> predictors =
       ValuesOf("predictor", "--predictor", space.predictors, settings);
-  seeds = ValuesOf(kSeed, "--episodes", seeds, settings);
-
-  std::vector<bench::Factors> cases = {{}};
-  for (const auto& [choice, values] :
-       scenarios::ScenarioChoices(FindScenario(space.scenario, paths))) {
+  const std::string file = FindScenario(space.scenario, paths);
+  bench::Sweep sweep;
+  sweep.name = std::filesystem::path(file).stem().string();
+  sweep.scenarios = {space.scenario};
+  sweep.search = space.search;
+  for (const auto& [choice, values] : scenarios::ScenarioChoices(file)) {
     const bool is_given = settings.count(choice) != 0 || varied_keys.count(choice) != 0;
-    if (!is_given) cases = Cross(cases, choice, values);
+    if (!is_given) AddAxis(sweep, choice, values);
   }
-  for (const auto& [key, value] : settings) cases = Cross(cases, key, {value});
-  for (const VariedKeys& keys : varied) cases = Cross(cases, keys.factor, keys.values);
-  cases = Cross(cases, kSpeed, speeds);
-  cases = Cross(cases, "knowledge", knowledge);
-  cases = Cross(cases, "predictor", predictors);
-  return Cross(cases, kSeed, seeds);
-}
-
-bench::TableAxes ChooseAxes(const std::vector<bench::Factors>& cases, bench::TableAxes axes) {
-  std::vector<std::string> varying;
-  std::string known;
-  for (const auto& entry : cases.front()) {
-    const std::string& factor = entry.first;
-    known += (known.empty() ? "" : ", ") + factor;
-    const bool varies = std::any_of(cases.begin(), cases.end(), [&](const bench::Factors& one) {
-      return one.at(factor) != entry.second;
-    });
-    const bool is_taken = factor == axes.down || factor == axes.across || factor == kSeed;
-    if (varies && !is_taken) varying.push_back(factor);
+  for (const auto& [key, value] : settings) AddAxis(sweep, key, {value});
+  for (const VariedKeys& keys : varied) AddAxis(sweep, keys.factor, keys.values);
+  AddAxis(sweep, kSpeed, speeds);
+  AddAxis(sweep, "knowledge", knowledge);
+  AddAxis(sweep, "predictor", predictors);
+  sweep.seeds.clear();
+  for (int seed = 1; seed <= space.episodes; ++seed) {
+    sweep.seeds.push_back(static_cast<std::uint64_t>(seed));
   }
-  const auto check = [&](const char* flag, const std::string& factor) {
-    if (factor.empty() || cases.front().count(factor) != 0) return;
-    throw InputError(flag, "'" + factor + "' is no factor of this study (" +
-                               (known.empty() ? "it has none: nothing is given to vary"
-                                              : "there are: " + known) +
-                               ")");
-  };
-  check("--down", axes.down);
-  check("--across", axes.across);
-  if (!axes.down.empty() && axes.down == axes.across) {
-    throw InputError("--across", "'" + axes.across + "' is listed down already");
-  }
-  const bool one_goes_down = axes.down.empty() && varying.size() == 1;
-  if (axes.across.empty() && !varying.empty() && !one_goes_down) {
-    for (const std::string& factor :
-         {std::string("knowledge"), std::string("predictor"), varying.back()}) {
-      if (std::erase(varying, factor) == 0) continue;
-      axes.across = factor;
-      break;
-    }
-  }
-  if (axes.down.empty() && !varying.empty()) axes.down = varying.front();
-  return axes;
+  if (space.episodes == 0) sweep.seeds = {fixed_seed.value_or(SeedIn(file))};
+  return sweep;
 }
 
 }  // namespace sidestep::cli

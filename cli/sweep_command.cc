@@ -16,6 +16,7 @@
 #include "sidestep/cli/scenario_options.h"
 #include "sidestep/cli/sweep_runner.h"
 #include "sidestep/cli/sweep_submit.h"
+#include "sidestep/cli/sweep_summary.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
 #include "sidestep/scenarios/scenario.h"
@@ -171,11 +172,10 @@ int Merge(const SweepOptions& options) {
   const bench::SweepRows rows = asked.runner().Rows();
   const bool is_whole = TellRows(asked.plan(), rows);
   asked.runner().Merge(rows);
-  if (options.csv) {
-    bench::WriteRunCsv(bench::RunDatabase(asked.runner().database()),
-                       asked.runner().out() + "/results.csv");
-  }
-  PrintOutcomes(rows);
+  const bench::RunDatabase database(asked.runner().database());
+  if (options.csv) bench::WriteRunCsv(database, asked.runner().out() + "/results.csv");
+  TellSummary(database, ChooseAxes(asked.plan().sweep(), {}), "sidestep sweep run " + options.file,
+              asked.runner().out());
   Print("written {}: {} of {} runs\n", asked.runner().database(), rows.num_done(),
         asked.plan().num_runs());
   return is_whole ? 0 : 1;

@@ -39,6 +39,7 @@ constexpr const char* kPlanFormat = "sidestep-plan-1";
 constexpr std::uintmax_t kMaxPlanBytes = 1 << 20;
 // Of an axis, that are resolved before the work: evenly chosen, the first and the last among them.
 constexpr std::size_t kMostChecked = 50;
+constexpr std::uint64_t kMostTried = 1000;
 
 std::string CpuName() {
   std::ifstream stream("/proc/cpuinfo");
@@ -126,29 +127,34 @@ SweepRunner::Checked SweepRunner::Check() const {
   Checked checked;
   Fingerprint inputs;
   std::exception_ptr first_error;
-  bool seed_matters = false;
-  for (const bench::PlannedRun& run : asked) {
+  const auto check = [&](const bench::PlannedRun& run) {
     ++checked.num_checked;
     try {
       const Problem problem = LoadCase(ScenarioOf(run), AllFactorsOf(run), paths_);
       const bench::RunIdentity identity = Identify(problem.scenario, paths_);
       inputs.Add(identity.scenario);
       inputs.Add(identity.models);
-      seed_matters = seed_matters || !scenarios::WhatTheSeedChanges(problem.scenario).empty();
+      checked.seed_matters =
+          checked.seed_matters || !scenarios::WhatTheSeedChanges(problem.scenario).empty();
+      if (checked.description.empty()) checked.description = problem.scenario.description;
+      return true;
     } catch (const InputError& error) {
       if (!first_error) first_error = std::current_exception();
       inputs.Add("refused");
       std::string what = run.scenario;
       for (const auto& [factor, value] : run.factors) what += ", " + factor + " " + value;
       checked.refused.push_back(what + ": " + error.what());
+      return false;
     }
+  };
+  bool can_be_run = false;
+  for (const bench::PlannedRun& run : asked) can_be_run = check(run) || can_be_run;
+  // Perhaps the first values of two axes are both wrong.
+  for (std::uint64_t c = 0; c < std::min(plan_.num_combinations(), kMostTried) && !can_be_run;
+       ++c) {
+    can_be_run = check(plan_.At(plan_.FirstOf(c)));
   }
-  if (checked.refused.size() == asked.size()) std::rethrow_exception(first_error);
-  if (sweep.seeds.size() > 1 && !seed_matters) {
-    throw InputError(sweep.name + ": seeds",
-                     "a seed changes nothing: the scenario has no variations, nothing walks at "
-                     "random, and its sensor is perfect");
-  }
+  if (!can_be_run) std::rethrow_exception(first_error);
   checked.inputs = inputs.Text();
   return checked;
 }
@@ -163,7 +169,13 @@ bench::ShardMaker SweepRunner::Maker() const {
 }
 
 bench::ShardMaker SweepRunner::Prepare(bool again) const {
-  bench::ShardMaker maker{BuildId(), Check().inputs};
+  const Checked checked = Check();
+  if (plan_.sweep().seeds.size() > 1 && !checked.seed_matters) {
+    throw InputError(plan_.sweep().name + ": seeds",
+                     "a seed changes nothing: the scenario has no variations, nothing walks at "
+                     "random, and its sensor is perfect");
+  }
+  bench::ShardMaker maker{BuildId(), checked.inputs};
   MakeOutFolder(out_, {"plan.json"});
   MakeOutFolder(shards(), {});
   if (plan_.sweep().traces != bench::KeptTraces::kNone) MakeOutFolder(out_ + "/traces", {});

@@ -26,16 +26,19 @@ class SweepRunner {
   /// What resolving showed: each scenario with each value of each axis, the other axes at their
   /// first ones. So every file that the sweep needs was read, and every value judged.
   struct Checked {
-    std::string inputs;  ///< a fingerprint of the resolved scenarios and their robots
+    std::string inputs;       ///< a fingerprint of the resolved scenarios and their robots
+    std::string description;  ///< of the first scenario that can be run
+    bool seed_matters = false;
     int num_checked = 0;
     std::vector<std::string> refused;  ///< of them: what, and why
   };
-  /// @throws InputError if all are refused, or if seeds are counted and change nothing.
+  /// @throws InputError if nothing can be run.
   Checked Check() const;
 
   /// Makes the folder ready for rows of this program and these inputs.
   /// @param again rows of another build or of other inputs may be there, and do not count.
-  /// @throws InputError if they are there otherwise, or the folder cannot be written.
+  /// @throws InputError if they are there otherwise, the folder cannot be written, nothing can be
+  /// run, or seeds are counted and change nothing.
   bench::ShardMaker Prepare(bool again) const;
 
   struct RunOptions {

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "sidestep/bench/database/run_database.h"
+#include "sidestep/bench/database/run_database_writer.h"
+#include "sidestep/bench/database/table_rows.h"
 #include "sidestep/bench/process_pool.h"
 #include "sidestep/bench/sweep/shard_file.h"
 #include "sidestep/cli/build_id.h"
@@ -51,16 +53,6 @@ std::string ValueText(const bench::SqlStatement& row, int column) {
   const char kind = row.Kind(column);
   if (kind == 'r') return ShortestText(row.Number(column));
   return row.Text(column);  // of NULL: empty
-}
-
-// The value of a factor as the sweep had it, which its column may hold as a number.
-std::string LevelOf(const bench::FactorColumn& factor, const bench::SqlStatement& row, int column) {
-  if (!factor.is_number) return row.Text(column);
-  const double number = row.Number(column);
-  for (const std::string& value : factor.values) {
-    if (std::stod(value) == number) return value;
-  }
-  return ShortestText(number);
 }
 
 class Verification {
@@ -123,7 +115,8 @@ class Verification {
       const std::string column = row.ColumnName(c);
       recorded.values[column] = ValueText(row, c);
       for (const bench::FactorColumn& factor : database_.factors()) {
-        if (factor.column == column) recorded.factors[factor.name] = LevelOf(factor, row, c);
+        if (factor.column == column)
+          recorded.factors[factor.name] = bench::ValueAsSwept(factor, row, c);
       }
     }
     recorded.factors["seed"] = recorded.values["seed"];
@@ -172,7 +165,8 @@ class Verification {
     for (const auto& [metric, value] : row.metrics) {
       compare(metric, std::isfinite(value) ? ShortestText(value) : "");
     }
-    for (const auto& [key, value] : row.drawn) compare("drawn_" + key, ShortestText(value));
+    for (const auto& [key, value] : row.drawn)
+      compare(bench::DrawnColumn(key), ShortestText(value));
     return Joined(different, "; ");
   }
 

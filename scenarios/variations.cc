@@ -17,8 +17,10 @@ namespace {
 constexpr const char* kSpeedFactor = "speed_factor";
 constexpr const char* kDelay = "delay_s";
 constexpr const char* kSideways = "sideways_m";
+constexpr const char* kYaw = "yaw_rad";
 // Bounds against slips of the pen.
-constexpr Range kSpeedFactors{0, 100}, kDelays_s{0, 60}, kSideways_m{-100, 100};
+constexpr Range kSpeedFactors{0, 100}, kDelays_s{0, 60}, kSideways_m{-100, 100}, kYaws_rad{-7, 7};
+constexpr const char* kAxes[] = {"x_m", "y_m", "z_m"};
 
 void Delay(Motion& motion, double delay_s) {
   std::visit(
@@ -51,7 +53,9 @@ void MoveLeft(Motion& motion, double by_m) {
 }
 
 // Draws what `key` says, if it is there, into scenario.drawn.
-void Draw(const YamlReader& map, const char* key, const Range& bounds, Scenario& scenario) {
+// @param of whom the draw is, `NAME.`; empty: of all.
+void Draw(const YamlReader& map, const char* key, const Range& bounds, Scenario& scenario,
+          const std::string& of = "") {
   if (!map.Has(key)) return;
   const Eigen::VectorXd range = map.GetVector(key, 2);
   if (!(range(0) >= bounds.least && range(0) < range(1) && range(1) <= bounds.most)) {
@@ -59,11 +63,33 @@ void Draw(const YamlReader& map, const char* key, const Range& bounds, Scenario&
                       " <= LEAST < MOST <= " + Number(bounds.most) + ", is " + List(range));
   }
   if (scenario.moving_obstacles.empty()) return;
-  RandomStream random(scenario.seed, std::string("variations.") + key);
-  scenario.drawn[key] = random.Uniform(range(0), range(1));
+  RandomStream random(scenario.seed, "variations." + of + key);
+  scenario.drawn[of + key] = random.Uniform(range(0), range(1));
 }
 
-double DrawnOr(const Scenario& scenario, const char* key, double otherwise) {
+// Draws how far an obstacle starts from where the file has it: evenly within `within_m` to either
+// side, or by a normal deviate of `deviation_m`, along each axis.
+void DrawOffset(const YamlReader& map, Scenario& scenario, const std::string& of) {
+  if (map.Has("within_m") && map.Has("deviation_m")) {
+    map.Fail("deviation_m", "must not be given beside within_m");
+  }
+  for (const char* const key : {"within_m", "deviation_m"}) {
+    if (!map.Has(key)) continue;
+    const Eigen::Vector3d size_m = map.GetVector3(key);
+    if (!(size_m.minCoeff() >= 0 && size_m.maxCoeff() <= kSideways_m.most)) {
+      map.Fail(key, "must be three lengths from 0 to 100, is " + List(size_m));
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      if (size_m(axis) == 0) continue;
+      RandomStream random(scenario.seed, "variations." + of + kAxes[axis]);
+      const bool is_even = key == std::string("within_m");
+      scenario.drawn[of + kAxes[axis]] =
+          size_m(axis) * (is_even ? random.Uniform(-1, 1) : random.Normal());
+    }
+  }
+}
+
+double DrawnOr(const Scenario& scenario, const std::string& key, double otherwise) {
   const auto drawn = scenario.drawn.find(key);
   return drawn == scenario.drawn.end() ? otherwise : drawn->second;
 }
@@ -109,6 +135,32 @@ void AddChangedNoise(const SensorSettings& sensor, std::vector<std::string>& cha
   if (sensor.tag_images) add("tag_images", sensor.tag_images->grey_noise > 0);
 }
 
+// What is drawn for one obstacle alone.
+void DrawObject(const YamlReader& map, Scenario& scenario) {
+  const std::string name = map.GetString("name");
+  const auto obstacle =
+      std::find_if(scenario.moving_obstacles.begin(), scenario.moving_obstacles.end(),
+                   [&](const MovingObstacle& one) { return one.name == name; });
+  if (obstacle == scenario.moving_obstacles.end()) {
+    map.Fail("name", "'" + name + "' is no moving obstacle");
+  }
+  const std::string of = name + ".";
+  Draw(map, kSpeedFactor, kSpeedFactors, scenario, of);
+  Draw(map, kDelay, kDelays_s, scenario, of);
+  Draw(map, kYaw, kYaws_rad, scenario, of);
+  DrawOffset(map, scenario, of);
+  map.CheckNoUnknownKeys();
+  Scenario alone = scenario;
+  alone.moving_obstacles = {*obstacle};
+  ScaleSpeeds(alone, DrawnOr(scenario, of + kSpeedFactor, 1));
+  obstacle->motion = alone.moving_obstacles.front().motion;
+  Delay(obstacle->motion, DrawnOr(scenario, of + kDelay, 0));
+  obstacle->rpy_rad.z() += DrawnOr(scenario, of + kYaw, 0);
+  Eigen::Vector3d by_m;
+  for (int axis = 0; axis < 3; ++axis) by_m(axis) = DrawnOr(scenario, of + kAxes[axis], 0);
+  if (!by_m.isZero(0)) std::visit([&](auto& any) { Shift(any, by_m); }, obstacle->motion);
+}
+
 }  // namespace
 
 void DrawVariations(const YamlReader& top, Scenario& scenario) {
@@ -117,6 +169,8 @@ void DrawVariations(const YamlReader& top, Scenario& scenario) {
   Draw(map, kSpeedFactor, kSpeedFactors, scenario);
   Draw(map, kDelay, kDelays_s, scenario);
   Draw(map, kSideways, kSideways_m, scenario);
+  const std::vector<YamlReader> objects =
+      map.Has("objects") ? map.GetMaps("objects") : std::vector<YamlReader>();
   map.CheckNoUnknownKeys();
   ScaleSpeeds(scenario, DrawnOr(scenario, kSpeedFactor, 1));
   for (MovingObstacle& obstacle : scenario.moving_obstacles) {
@@ -125,6 +179,7 @@ void DrawVariations(const YamlReader& top, Scenario& scenario) {
       MoveLeft(obstacle.motion, scenario.drawn.at(kSideways));
     }
   }
+  for (const YamlReader& object : objects) DrawObject(object, scenario);
 }
 
 void SetSpeed(Scenario& scenario, double speed_m_s) {
@@ -132,8 +187,9 @@ void SetSpeed(Scenario& scenario, double speed_m_s) {
     throw InputError("--speed", "this scenario has no moving obstacle");
   }
   if (speed_m_s > YamlReader::kLargestNumber) throw InputError("--speed", "must be at most 1e12");
-  const double drawn_m_s = speed_m_s * DrawnOr(scenario, kSpeedFactor, 1);
+  const double of_all_m_s = speed_m_s * DrawnOr(scenario, kSpeedFactor, 1);
   for (MovingObstacle& obstacle : scenario.moving_obstacles) {
+    const double drawn_m_s = of_all_m_s * DrawnOr(scenario, obstacle.name + "." + kSpeedFactor, 1);
     // Its greatest speed has the factor already.
     const auto* const accelerated = std::get_if<AcceleratedMotion>(&obstacle.motion);
     if (accelerated && accelerated->max_speed_m_s < drawn_m_s) {

@@ -47,8 +47,7 @@ const Names kForeignRandom = {"<random>",           "_distribution<",
                               "std::random_device", "std::rand(",
                               "::Random(",          "setRandom("};
 // Programs of their own, and what grows on the disk as the work goes on.
-const Names kOutsideTheCrafts = {"bench/micro/", "bench/peers/", "bench/study_log.",
-                                 "record/journal."};
+const Names kOutsideTheCrafts = {"bench/micro/", "bench/peers/", "record/journal."};
 
 bool StartsWith(std::string_view text, std::string_view prefix) {
   return text.substr(0, prefix.size()) == prefix;

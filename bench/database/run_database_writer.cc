@@ -44,6 +44,13 @@ bool IsNumber(const std::string& text) {
   return parsed.ec == std::errc() && parsed.ptr == text.data() + text.size();
 }
 
+// A name as SQL and Planner Arena take it without quotes.
+std::string ColumnText(const std::string& name) {
+  std::string text;
+  for (const char c : name) text += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+  return text;
+}
+
 // Whether a factor says how the robot plans, rather than what stands before it.
 bool IsOfPlanner(const std::string& factor) {
   const std::string first = factor.substr(0, factor.find_first_of(".[/"));
@@ -54,8 +61,6 @@ bool IsOfPlanner(const std::string& factor) {
 }
 
 std::string SqlType(const FactorColumn& factor) { return factor.is_number ? "REAL" : "TEXT"; }
-
-std::string DrawnColumn(const std::string& key) { return "drawn_" + key; }
 
 // What makes a list of columns of a CREATE TABLE.
 std::string Columns(const std::vector<FactorColumn>& factors, bool of_planner) {
@@ -169,6 +174,8 @@ double NumberOr(const std::map<std::string, double>& numbers, const std::string&
 
 }  // namespace
 
+std::string DrawnColumn(const std::string& key) { return "drawn_" + ColumnText(key); }
+
 std::vector<FactorColumn> FactorColumnsOf(
     const std::vector<std::pair<std::string, std::vector<std::string>>>& factors) {
   const auto lower = [](std::string text) {
@@ -187,9 +194,7 @@ std::vector<FactorColumn> FactorColumnsOf(
   for (const auto& [name, values] : factors) {
     FactorColumn& factor = columns.emplace_back();
     factor.name = name;
-    for (const char c : name) {
-      factor.column += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
-    }
+    factor.column = ColumnText(name);
     if (name == "robot.model") factor.column = "robot";
     if (name == "planner.name") factor.column = "planner";
     while (!taken.insert(lower(factor.column)).second) factor.column += "_";

@@ -38,6 +38,9 @@ struct NumberedRun {
 std::vector<FactorColumn> FactorColumnsOf(
     const std::vector<std::pair<std::string, std::vector<std::string>>>& factors);
 
+/// The column of what was drawn under a key of RunRow::drawn.
+std::string DrawnColumn(const std::string& key);
+
 /// Writes a database, row by row, in memory that does not grow with them. The file appears when it
 /// is committed, whole, or not at all.
 class RunDatabaseWriter {

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "sidestep/bench/json_text.h"
-#include "sidestep/bench/study_page.h"
+#include "sidestep/bench/summary_page.h"
 #include "sidestep/bench/validation/support.h"
 #include "sidestep/core/csv.h"
 #include "sidestep/core/input_error.h"

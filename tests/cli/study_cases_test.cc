@@ -4,25 +4,27 @@
 
 #include "sidestep/cli/run_case.h"
 #include "sidestep/cli/shell_quote.h"
+#include "sidestep/cli/sweep_summary.h"
 #include "sidestep/cli/varied_keys.h"
 #include "sidestep/core/input_error.h"
 
 namespace sidestep::cli {
 namespace {
 
-std::vector<bench::Factors> Of(const std::vector<std::pair<std::string, int>>& counts) {
-  std::vector<bench::Factors> cases = {{}};
+bench::Sweep Of(const std::vector<std::pair<std::string, int>>& counts) {
+  bench::Sweep sweep;
+  sweep.scenarios = {"hall"};
+  sweep.seeds = {1};
   for (const auto& [factor, count] : counts) {
-    std::vector<bench::Factors> crossed;
-    for (const bench::Factors& one : cases) {
-      for (int i = 0; i < count; ++i) {
-        crossed.push_back(one);
-        crossed.back()[factor] = std::to_string(i);
-      }
+    std::vector<std::string> values;
+    for (int i = 0; i < count; ++i) values.push_back(std::to_string(i));
+    if (factor == "seed") {
+      sweep.seeds.assign(static_cast<std::size_t>(count), 1);
+    } else {
+      sweep.axes.push_back({factor, values});
     }
-    cases = crossed;
   }
-  return cases;
+  return sweep;
 }
 
 struct Choice {
@@ -51,6 +53,14 @@ TEST(ChooseAxes, TakesWhatVaries) {
     EXPECT_EQ(axes.down, choice.down);
     EXPECT_EQ(axes.across, choice.across);
   }
+}
+
+TEST(ChooseAxes, PutsAcrossWhatASweepCompares) {
+  bench::Sweep sweep = Of({{"knowledge", 2}, {"planner.qc", 2}, {"predictor", 3}});
+  sweep.question.factor = "planner.qc";
+  const bench::TableAxes axes = ChooseAxes(sweep, {});
+  EXPECT_EQ(axes.down, "knowledge");
+  EXPECT_EQ(axes.across, "planner.qc");
 }
 
 TEST(ChooseAxes, RefusesWhatIsNoFactor) {
@@ -93,30 +103,46 @@ TEST(VariedKeys, ThatGoTogetherAreSetTogether) {
 
 std::string Complaint(const StudySpace& space) {
   try {
-    StudyCases(space, {SIDESTEP_SOURCE_DIR "/models", SIDESTEP_SOURCE_DIR "/scenarios"});
+    SweepOf(space, {SIDESTEP_SOURCE_DIR "/models", SIDESTEP_SOURCE_DIR "/scenarios"});
   } catch (const InputError& error) {
     return error.what();
   }
   return "was accepted";
 }
 
-TEST(StudyCases, CrossWhatIsVaried) {
+TEST(SweepOf, CrossesWhatIsVaried) {
   StudySpace space;
   space.scenario = "walkway_behaviours";
   space.varied = {"behaviour=stop,turn", "replanning.latency_s/replanning.rate_hz=0.1/10,0.02/50"};
   space.episodes = 3;
-  const std::vector<bench::Factors> cases =
-      StudyCases(space, {SIDESTEP_SOURCE_DIR "/models", SIDESTEP_SOURCE_DIR "/scenarios"});
-  ASSERT_EQ(cases.size(), 12u);
-  EXPECT_EQ(cases.front(), (bench::Factors{{"behaviour", "stop"},
-                                           {"replanning.latency_s/replanning.rate_hz", "0.1/10"},
-                                           {"seed", "1"}}));
-  EXPECT_EQ(cases.back(), (bench::Factors{{"behaviour", "turn"},
-                                          {"replanning.latency_s/replanning.rate_hz", "0.02/50"},
-                                          {"seed", "3"}}));
+  const bench::SweepPlan plan(
+      SweepOf(space, {SIDESTEP_SOURCE_DIR "/models", SIDESTEP_SOURCE_DIR "/scenarios"}));
+  ASSERT_EQ(plan.num_runs(), 12u);
+  EXPECT_EQ(plan.At(0).factors,
+            (bench::Factors{{"behaviour", "stop"},
+                            {"replanning.latency_s/replanning.rate_hz", "0.1/10"}}));
+  EXPECT_EQ(plan.At(0).seed, 1u);
+  EXPECT_EQ(plan.At(11).factors,
+            (bench::Factors{{"behaviour", "turn"},
+                            {"replanning.latency_s/replanning.rate_hz", "0.02/50"}}));
+  EXPECT_EQ(plan.At(11).seed, 3u);
 }
 
-TEST(StudyCases, RefuseWhatCannotBeVaried) {
+TEST(SweepOf, TakesEveryOptionOfAChoiceThatIsLeftOpenAndTheScenariosSeed) {
+  StudySpace space;
+  space.scenario = "walkway_behaviours";
+  space.speeds = {0.5, 1};
+  const DataPaths paths{SIDESTEP_SOURCE_DIR "/models", SIDESTEP_SOURCE_DIR "/scenarios"};
+  EXPECT_EQ(bench::SweepPlan(SweepOf(space, paths)).num_runs(), 30u);
+  space.settings = {"behaviour=stop", "seed=9"};
+  const bench::SweepPlan fixed(SweepOf(space, paths));
+  EXPECT_EQ(fixed.num_runs(), 2u);
+  EXPECT_EQ(fixed.At(0).seed, 9u);
+  space.settings = {"seed=nine"};
+  EXPECT_EQ(Complaint(space), "--set seed: must be a whole number >= 0, is 'nine'");
+}
+
+TEST(SweepOf, RefusesWhatCannotBeVaried) {
   const auto complaint = [](const std::vector<std::string>& varied) {
     StudySpace space;
     space.scenario = "walkway_behaviours";

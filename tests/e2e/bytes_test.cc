@@ -269,7 +269,7 @@ INSTANTIATE_TEST_SUITE_P(
                    "execute_and_update.h5"},
         Unwritable{"Study",
                    {"study", "hsr_walkway", "--knowledge", "static", "--out", "OUT"},
-                   "study.csv"}),
+                   "results.db"}),
     [](const auto& test) { return std::string(test.param.name); });
 
 TEST(Field, RefusesANameBeforeItLooks) {

@@ -7,11 +7,13 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "sidestep/core/csv.h"
 #include "tests/support/bytes_of.h"
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
@@ -399,115 +401,57 @@ Finished QuickStudy(const std::filesystem::path& out, std::vector<std::string> f
   return Sidestep(arguments, environment);
 }
 
-TEST(Study, ThatWasInterruptedGoesOnWhereItWas) {
+TEST(Study, ThatIsToHaveMoreEpisodesRunsOnlyThose) {
   const TemporaryFolder folder;
-  const auto study = [&](const std::string& episodes, const std::string& out, bool resume) {
-    std::vector<std::string> further = {
-        "--set", "behaviour=stop", "--knowledge", "static,prediction", "--episodes", episodes};
-    if (resume) further.push_back("--resume");
-    const Finished finished = QuickStudy(folder.path() / out, further);
+  const auto study = [&](const std::string& episodes, const std::string& out) {
+    const Finished finished = QuickStudy(
+        folder.path() / out,
+        {"--set", "behaviour=stop", "--knowledge", "static,prediction", "--episodes", episodes});
     EXPECT_EQ(finished.exit_code, 0) << finished.err;
+    return finished.err;
   };
-  study("2", "whole", false);
-  study("1", "parts", false);
-  const std::string first = BytesOf(folder.path() / "parts/study.jsonl");
-  std::filesystem::resize_file(folder.path() / "parts/study.jsonl", first.size() - 5);
-  study("2", "parts", true);
-  EXPECT_EQ(BytesOf(folder.path() / "parts/study.csv"), BytesOf(folder.path() / "whole/study.csv"));
-  // What was there has not been run again: its lines stand where they stood.
-  const std::string kept = first.substr(0, first.find('\n', first.find('\n') + 1));
-  EXPECT_THAT(BytesOf(folder.path() / "parts/study.jsonl"), StartsWith(kept));
-
-  const Finished again = QuickStudy(folder.path() / "parts", {});
-  EXPECT_EQ(again.exit_code, 2);
-  EXPECT_THAT(again.err, HasSubstr("parts/study.jsonl: holds a study: go on with it by --resume"));
+  study("2", "whole");
+  study("1", "parts");
+  EXPECT_THAT(study("2", "parts"), HasSubstr("2 of 4 runs, from before"));
+  EXPECT_EQ(BytesOf(folder.path() / "parts/results.csv"),
+            BytesOf(folder.path() / "whole/results.csv"));
+  EXPECT_THAT(study("2", "parts"), HasSubstr("4 of 4 runs, from before"));
 }
 
-TEST(Study, GoesOnAfterAChangedCommentButNotAfterAChangedRobotOrScenario) {
-  namespace fs = std::filesystem;
-  const TemporaryFolder folder;
-  const fs::path data = folder.path() / "data";
-  for (const char* const part : {"models", "scenarios"}) {
-    fs::create_directories(data);
-    fs::copy(fs::path(SIDESTEP_SOURCE_DIR) / part, data / part, fs::copy_options::recursive);
+// The rows of a study's table, by column.
+std::vector<std::map<std::string, std::string>> RowsIn(const std::filesystem::path& out) {
+  const CsvFile csv = ReadCsv((out / "results.csv").string());
+  std::vector<std::map<std::string, std::string>> rows;
+  for (const CsvRow& line : csv.rows) {
+    std::map<std::string, std::string>& row = rows.emplace_back();
+    for (std::size_t i = 0; i < csv.columns.size(); ++i) row[csv.columns[i]] = line.fields[i];
   }
-  const auto append = [&](const char* file, const char* text) {
-    std::ofstream(data / file, std::ios::app) << text;
-  };
-  const auto study = [&](bool resume) {
-    std::vector<std::string> further = {"--set", "behaviour=stop"};
-    if (resume) further.push_back("--resume");
-    return QuickStudy(folder.path() / "out", further, {"SIDESTEP_DATA_DIR=" + data.string()});
-  };
-  EXPECT_EQ(study(false).exit_code, 0);
-  const std::string log = BytesOf(folder.path() / "out/study.jsonl");
-  append("scenarios/walkway_behaviours.yaml", "# another comment\n");
-  EXPECT_EQ(study(true).exit_code, 0);
-  EXPECT_EQ(BytesOf(folder.path() / "out/study.jsonl"), log);
-
-  append("models/panda/robot.yaml", "# another robot, for all we know\n");
-  const Finished robot = study(true);
-  EXPECT_EQ(robot.exit_code, 2);
-  EXPECT_THAT(robot.err, HasSubstr("out/study.jsonl: holds rows of another robot"));
-
-  append("scenarios/walkway_behaviours.yaml", "predictor: imm\n");
-  const Finished scenario = study(true);
-  EXPECT_EQ(scenario.exit_code, 2);
-  EXPECT_THAT(scenario.err, HasSubstr("out/study.jsonl: holds rows of another scenario"));
+  return rows;
 }
 
 TEST(Study, KeepsTracesAndSaysWhatRunsAnEpisodeAgainToTheBit) {
-  namespace fs = std::filesystem;
   const TemporaryFolder folder;
   const Finished finished =
       QuickStudy(folder.path() / "study", {"--set", "behaviour=random_walk", "--knowledge",
                                            "static", "--episodes", "2", "--traces", "all"});
   EXPECT_EQ(finished.exit_code, 0) << finished.err;
-  std::istringstream lines(BytesOf(folder.path() / "study/study.csv"));
-  std::string line;
-  std::getline(lines, line);
-  EXPECT_THAT(line, AllOf(HasSubstr("drawn.delay_s,drawn.speed_factor"),
-                          ::testing::EndsWith(",run,trace,command")));
-  int num_rows = 0;
   std::string last_trace;
-  while (std::getline(lines, line)) {
-    const std::size_t at = line.find("traces/");
-    ASSERT_NE(at, std::string::npos) << line;
-    const std::size_t comma = line.find(',', at);
-    const std::string trace = BytesOf(folder.path() / "study" / line.substr(at, comma - at));
-    const std::string command = line.substr(comma + 1);
+  const auto rows = RowsIn(folder.path() / "study");
+  EXPECT_EQ(rows.size(), 2u);
+  for (const auto& row : rows) {
+    EXPECT_NE(row.at("drawn_delay_s"), "");
+    const std::string& command = row.at("command");
     ASSERT_THAT(command, StartsWith("sidestep run walkway_behaviours "));
+    const std::string trace = BytesOf(folder.path() / "study" / row.at("trace"));
     // As it stands in the table: each row has a folder of its own to go into.
     const Finished run = RunProgram({"/bin/sh", "-c", SIDESTEP_PROGRAM + command.substr(8)}, {},
                                     folder.path().string());
     EXPECT_EQ(run.exit_code, 0) << run.err;
-    const fs::path again = folder.path() / command.substr(command.find("--out ") + 6);
+    const std::filesystem::path again = folder.path() / command.substr(command.find("--out ") + 6);
     EXPECT_TRUE(BytesOf(again / "trace.h5") == trace) << command;
-    ++num_rows;
     EXPECT_NE(trace, last_trace);
     last_trace = trace;
   }
-  EXPECT_EQ(num_rows, 2);
-}
-
-TEST(Study, MakesTracesOfFailuresAfterwards) {
-  const TemporaryFolder folder;
-  const auto traces = [&] {
-    std::error_code error;
-    return std::distance(std::filesystem::directory_iterator(folder.path() / "traces", error), {});
-  };
-  std::vector<std::string> further = {"--set", "behaviour=stop", "--episodes", "2"};
-  EXPECT_EQ(QuickStudy(folder.path(), further).exit_code, 0);
-  EXPECT_EQ(traces(), 0);
-  const std::string log = BytesOf(folder.path() / "study.jsonl");
-  further.insert(further.end(), {"--resume", "--traces", "failures"});
-  const Finished finished = QuickStudy(folder.path(), further);
-  EXPECT_EQ(finished.exit_code, 0);
-  const std::string csv = BytesOf(folder.path() / "study.csv");
-  std::ptrdiff_t failures = 0;
-  for (std::size_t at = 0; (at = csv.find(",traces/", at)) != std::string::npos; ++at) ++failures;
-  EXPECT_EQ(traces(), failures);
-  EXPECT_EQ(BytesOf(folder.path() / "study.jsonl"), log);
 }
 
 TEST(Study, MakesARowOfACombinationThatIsRefusedAndGoesOn) {
@@ -515,25 +459,24 @@ TEST(Study, MakesARowOfACombinationThatIsRefusedAndGoesOn) {
   const Finished finished =
       QuickStudy(folder.path(), {"--set", "behaviour=speed_up_2", "--speed", "1,90"});
   EXPECT_EQ(finished.exit_code, 1);
-  const std::string csv = BytesOf(folder.path() / "study.csv");
-  EXPECT_THAT(csv, HasSubstr("failed,--speed: is above the max_speed_m_s of 'hsr'"));
-  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
+  const auto rows = RowsIn(folder.path());
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[1].at("outcome"), "failed");
+  EXPECT_EQ(rows[1].at("error"), "--speed: is above the max_speed_m_s of 'hsr'");
+  EXPECT_EQ(rows[1].at("command"), "");
   EXPECT_THAT(finished.out, HasSubstr("| speed_m_s | episodes |"));
 }
 
-TEST(Study, ThatIsToHaveLessThanItHasIsRefused) {
+TEST(Study, LeavesOutWhatIsNotAskedForAndSaysSo) {
   const TemporaryFolder folder;
-  const auto study = [&](const std::string& episodes, const std::string& flag) {
-    return QuickStudy(folder.path(), {"--set", "behaviour=stop", "--episodes", episodes, flag});
+  const auto study = [&](const std::string& episodes) {
+    return QuickStudy(folder.path(), {"--set", "behaviour=stop", "--episodes", episodes});
   };
-  EXPECT_EQ(study("2", "--traces=none").exit_code, 0);
-  const std::string csv = BytesOf(folder.path() / "study.csv");
-  const Finished fewer = study("1", "--resume");
-  EXPECT_EQ(fewer.exit_code, 2);
-  EXPECT_THAT(fewer.err,
-              AllOf(HasSubstr("study.jsonl: holds an episode that is not asked for"),
-                    HasSubstr("seed 2): ask for it too, choose another folder by --out")));
-  EXPECT_EQ(BytesOf(folder.path() / "study.csv"), csv);
+  EXPECT_EQ(study("2").exit_code, 0);
+  const Finished fewer = study("1");
+  EXPECT_EQ(fewer.exit_code, 0) << fewer.err;
+  EXPECT_EQ(RowsIn(folder.path()).size(), 1u);
+  EXPECT_THAT(fewer.out, HasSubstr("1 rows of other runs in this folder are left out"));
 }
 
 TEST(Study, SaysOnItsPageWhatItIsOf) {
@@ -541,8 +484,8 @@ TEST(Study, SaysOnItsPageWhatItIsOf) {
   const Finished finished = QuickStudy(
       folder.path(), {"--set", "behaviour=stop", "--knowledge", "static,prediction", "-j", "1"});
   EXPECT_EQ(finished.exit_code, 0) << finished.err;
-  EXPECT_THAT(BytesOf(folder.path() / "study.md"),
-              AllOf(StartsWith("# Study of walkway_behaviours\n"),
+  EXPECT_THAT(BytesOf(folder.path() / "summary.md"),
+              AllOf(StartsWith("# walkway_behaviours\n"),
                     HasSubstr("- varied: knowledge = static, prediction\n"),
                     HasSubstr("- fixed: behaviour = stop\n"),
                     HasSubstr("sidestep study walkway_behaviours --set"),
@@ -555,9 +498,9 @@ TEST(Study, VariesKeysTogetherAndSetsTheSameEpisodesBesideEachOther) {
       folder.path(), {"--vary", "behaviour=stop,turn", "--vary",
                       "replanning.latency_s/replanning.rate_hz=0.1/10,0.02/50", "--episodes", "2"});
   EXPECT_EQ(finished.exit_code, 0) << finished.err;
-  EXPECT_THAT(BytesOf(folder.path() / "study.csv"),
+  EXPECT_THAT(BytesOf(folder.path() / "results.csv"),
               HasSubstr("--set replanning.latency_s=0.02 --set replanning.rate_hz=50"));
-  EXPECT_THAT(BytesOf(folder.path() / "study.md"),
+  EXPECT_THAT(BytesOf(folder.path() / "summary.md"),
               AllOf(HasSubstr("| behaviour | 0.1/10 | 0.02/50 |"),
                     HasSubstr("\n| turn | 0.02/50 | 2 |"), HasSubstr("\n| all | 0.1/10 | 4 |")));
 }
@@ -583,7 +526,7 @@ TEST(Study, GoesIntoAFolderOfItsScenario) {
                   "--set", "horizon.duration_s=1"},
                  {}, folder.path().string());
   EXPECT_EQ(finished.exit_code, 0) << finished.err;
-  EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/study/hsr_walkway/study.csv"));
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/study/hsr_walkway/results.csv"));
 }
 
 // A folder of data with these scenarios.

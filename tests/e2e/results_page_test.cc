@@ -1,4 +1,4 @@
-// docs/results.md tells every key that runs and studies write.
+// docs/results.md and docs/database.md tell every key that runs and sweeps write.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "sidestep/bench/database/run_database.h"
 #include "sidestep/bench/metrics/registry.h"
-#include "sidestep/core/csv.h"
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
@@ -121,24 +121,46 @@ TEST(ResultsPage, TellsEveryKeyOfAResult) {
   }
 }
 
-TEST(ResultsPage, TellsEveryColumnOfAStudy) {
+// What is in backquotes in the first cells of the tables of docs/database.md.
+std::set<std::string> NamesOnTheDatabasePage() {
+  std::ifstream page(SIDESTEP_SOURCE_DIR "/docs/database.md");
+  std::set<std::string> names;
+  for (std::string line; std::getline(page, line);) {
+    if (!line.starts_with("| `")) continue;
+    const std::string cell = line.substr(2, line.find(" | ", 2) - 2);
+    for (std::size_t at = 0; (at = cell.find('`', at)) != std::string::npos;) {
+      const std::size_t end = cell.find('`', at + 1);
+      names.insert(cell.substr(at + 1, end - at - 1));
+      at = end + 1;
+    }
+  }
+  return names;
+}
+
+TEST(DatabasePage, TellsEveryColumnAndTable) {
   const TemporaryFolder folder;
   const Finished finished =
       Sidestep({"study", "walkway_behaviours", "--set", "behaviour=stop", "--knowledge", "static",
                 "--predictor", "imm", "--speed", "1", "--episodes", "1"},
                folder.path());
   ASSERT_EQ(finished.exit_code, 0) << finished.err;
-  const std::set<std::string> factors = {"behaviour",    "horizon.duration_s", "knowledge",
-                                         "planner.name", "predictor",          "seed",
-                                         "speed_m_s"};
-  std::set<std::string> columns;
-  for (const std::string& column : ReadCsv(folder.path() / "study.csv").columns) {
-    const bool is_drawn = column.starts_with("drawn.");
-    columns.insert(factors.count(column) > 0 ? "<factor>" : is_drawn ? "drawn.<name>" : column);
+  const bench::RunDatabase database(folder.path() / "results.db");
+  std::set<std::string> explained;
+  for (const bench::FactorColumn& factor : database.factors()) explained.insert(factor.column);
+  for (const bench::Metric& metric : bench::Metrics()) explained.insert(metric.name);
+  const std::set<std::string> names = NamesOnTheDatabasePage();
+  for (const std::string& column : database.columns()) {
+    const std::string name = column.starts_with("drawn_") ? "drawn_..." : column;
+    EXPECT_TRUE(names.contains(name) || explained.contains(name)) << name;
   }
-  Rows rows = RowsOf("`study.csv`");
-  rows.merge(RowsOf("Metrics"));
-  EXPECT_EQ(columns, KeysOf(rows));
+  bench::SqlStatement tables = database.sql().Prepare(
+      "SELECT name FROM sqlite_master WHERE type = 'table' AND name NOT LIKE 'sqlite_%'");
+  while (tables.Step()) {
+    const std::string table = tables.Text(0) + "(";
+    EXPECT_TRUE(std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+      return name.starts_with(table);
+    })) << table;
+  }
 }
 
 }  // namespace

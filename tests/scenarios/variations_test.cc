@@ -185,6 +185,73 @@ std::string Complaint(const std::string& variations) {
   return "was accepted";
 }
 
+// Of the two that cross the walkway, one alone.
+Scenario CrossingWith(int seed, const std::string& objects) {
+  return Load("walkway_behaviours", {{"behaviour", "crossing"},
+                                     {"seed", std::to_string(seed)},
+                                     {"variations", "{objects: [" + objects + "]}"}});
+}
+
+TEST(Variations, OfOneObjectChangeNoOther) {
+  const Scenario plain = CrossingWith(3, "");
+  const std::string name = plain.moving_obstacles[1].name;
+  const Scenario varied =
+      CrossingWith(3, "{name: " + name +
+                          ", speed_factor: [0.5, 0.9], delay_s: [0.1, 0.4], yaw_rad: [0.2, 0.3], "
+                          "within_m: [0.3, 0.2, 0]}");
+  EXPECT_EQ(ToYaml(CrossingWith(3, "")), ToYaml(plain));
+  for (const double t_s : {0.0, 0.7, 2.0}) {
+    EXPECT_EQ(PoseAt(varied.moving_obstacles[0], EpisodeTime(t_s)).translation(),
+              PoseAt(plain.moving_obstacles[0], EpisodeTime(t_s)).translation());
+  }
+  const auto& before = std::get<LinearMotion>(plain.moving_obstacles[1].motion);
+  const auto& after = std::get<LinearMotion>(varied.moving_obstacles[1].motion);
+  EXPECT_EQ(after.speed_m_s, before.speed_m_s * varied.drawn.at(name + ".speed_factor"));
+  EXPECT_EQ(after.begin_at_s, varied.drawn.at(name + ".delay_s"));
+  EXPECT_EQ(varied.moving_obstacles[1].rpy_rad.z() - plain.moving_obstacles[1].rpy_rad.z(),
+            varied.drawn.at(name + ".yaw_rad"));
+  const Eigen::Vector3d by_m(varied.drawn.at(name + ".x_m"), varied.drawn.at(name + ".y_m"), 0);
+  EXPECT_LT((after.start_m - before.start_m - by_m).norm(), 1e-12);
+  EXPECT_EQ(varied.drawn.count(name + ".z_m"), 0u);
+  Scenario faster = varied;
+  SetSpeed(faster, 2);
+  EXPECT_EQ(SpeedOf(faster.moving_obstacles[1]), 2 * varied.drawn.at(name + ".speed_factor"));
+  EXPECT_EQ(SpeedOf(faster.moving_obstacles[0]), 2);
+}
+
+TEST(Variations, MoveAnObjectEvenlyOrByANormalDeviate) {
+  constexpr int kSeeds = 300;
+  double even = 0, even_squares = 0, normal = 0, normal_squares = 0, most = 0;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    const double x = CrossingWith(seed, "{name: hsr, within_m: [1, 0, 0]}").drawn.at("hsr.x_m");
+    const double y = CrossingWith(seed, "{name: hsr, deviation_m: [0, 1, 0]}").drawn.at("hsr.y_m");
+    even += x / kSeeds;
+    even_squares += x * x / kSeeds;
+    normal += y / kSeeds;
+    normal_squares += y * y / kSeeds;
+    most = std::max(most, std::abs(x));
+  }
+  const double error = 1 / std::sqrt(1.0 * kSeeds);
+  EXPECT_NEAR(even, 0, 4 * std::sqrt(1.0 / 3) * error);
+  EXPECT_NEAR(even_squares, 1.0 / 3, 4 * std::sqrt(1.0 / 5 - 1.0 / 9) * error);
+  EXPECT_LE(most, 1);
+  EXPECT_NEAR(normal, 0, 4 * error);
+  EXPECT_NEAR(normal_squares, 1, 4 * std::sqrt(2.0) * error);
+}
+
+TEST(Variations, OfObjectsThatMakeNoSenseAreRefused) {
+  EXPECT_EQ(Complaint("{objects: [{name: ghost}]}"),
+            "--set variations.objects[0].name: 'ghost' is no moving obstacle");
+  EXPECT_THAT(Complaint("{objects: [{name: hsr, within_m: [-1, 0, 0]}]}"),
+              HasSubstr("objects[0].within_m: must be three lengths from 0 to 100, is [-1, 0, 0]"));
+  EXPECT_THAT(Complaint("{objects: [{name: hsr, within_m: [1, 0, 0], deviation_m: [1, 0, 0]}]}"),
+              HasSubstr("deviation_m: must not be given beside within_m"));
+  EXPECT_THAT(Complaint("{objects: [{name: hsr, speed_factor: [2, 1]}]}"),
+              HasSubstr("objects[0].speed_factor: must be [LEAST, MOST]"));
+  EXPECT_THAT(Complaint("{objects: [{name: hsr, sideways_m: [0, 1]}]}"),
+              HasSubstr("is not a known key"));
+}
+
 TEST(Variations, ThatAreNoRangesAreRefused) {
   EXPECT_EQ(
       Complaint("{speed_factor: [1.3, 0.75]}"),

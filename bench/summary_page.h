@@ -23,16 +23,17 @@ std::vector<std::string> FactorValues(const std::vector<RunRow>& rows, const std
 /// the others ended. Without `down` only the sums; without `across` one column.
 std::string OutcomeTable(const std::vector<RunRow>& rows, const TableAxes& axes);
 
-/// What a study is of.
-struct StudySubject {
-  std::string scenario;     ///< its name
-  std::string description;  ///< its own
-  std::string command;      ///< what makes the study, quoted for a shell
+/// What a sweep is of.
+struct SweepSubject {
+  std::string title;
+  std::string description;
+  std::string command;  ///< what makes it, quoted for a shell
 };
 
-/// A page in Markdown: of what the study is, what is varied, its table, and where something varies
+/// A page in Markdown: of what the sweep is, what is varied, its table, and where something varies
 /// across, what that does to the same episodes (bench/paired_table.h).
-std::string StudyPage(const StudySubject& subject, const std::vector<RunRow>& rows,
-                      const TableAxes& axes);
+/// @param rows one or more.
+std::string SummaryPage(const SweepSubject& subject, const std::vector<RunRow>& rows,
+                        const TableAxes& axes);
 
 }  // namespace sidestep::bench

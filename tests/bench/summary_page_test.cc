@@ -1,3 +1,5 @@
+#include "sidestep/bench/summary_page.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,7 +12,6 @@
 #include "sidestep/bench/paired_table.h"
 #include "sidestep/bench/resolve.h"
 #include "sidestep/bench/run_row.h"
-#include "sidestep/bench/study_page.h"
 
 namespace sidestep::bench {
 namespace {
@@ -119,43 +120,18 @@ TEST(PairedTable, IsEmptyWhereNothingVariesAcross) {
   EXPECT_EQ(PairedTable({Episode("slow", 1, true, 1, 1)}, {"behaviour", ""}), "");
 }
 
-TEST(StudyPage, SaysWhatIsVariedAndWhatIsNot) {
+TEST(SummaryPage, SaysWhatIsVariedAndWhatIsNot) {
   std::vector<RunRow> rows;
   for (int seed = 1; seed <= 30; ++seed) {
     rows.push_back(Row("stop", "imm", "goal"));
     rows.back().factors["seed"] = std::to_string(seed);
   }
-  const std::string page = StudyPage({"hall", "A hall", "sidestep study hall"}, rows, {"", ""});
-  EXPECT_THAT(page, ::testing::StartsWith("# Study of hall\n\nA hall\n\n"
+  const std::string page = SummaryPage({"hall", "A hall", "sidestep study hall"}, rows, {"", ""});
+  EXPECT_THAT(page, ::testing::StartsWith("# hall\n\nA hall\n\n"
                                           "- varied: seed = 1, 2, ..., 30 (30)\n"
                                           "- fixed: behaviour = stop\n- fixed: predictor = imm\n"
                                           "- 30 episodes, made by\n\n      sidestep study hall\n"));
   EXPECT_THAT(page, HasSubstr("| all | 30/30 |\n"));
-}
-
-TEST(RunsCsv, HoldsWhatWasDrawnAndHowToRunItAgain) {
-  std::vector<RunRow> rows = {Row("stop", "imm", "goal"), Row("turn", "imm", "failed")};
-  rows[0].drawn = {{"speed_factor", 0.1}};
-  rows[0].identity = {"s", "m", "b", ""};
-  rows[0].trace = "traces/x.h5";
-  rows[0].command = "sidestep run a --seed 1";
-  const std::string csv = RunsCsv(rows);
-  EXPECT_THAT(csv, HasSubstr("behaviour,predictor,drawn.speed_factor,outcome,error,"));
-  EXPECT_THAT(csv, HasSubstr(",run,trace,command\nstop,imm,0.1,goal,,"));
-  EXPECT_THAT(csv,
-              HasSubstr("," + RunId(rows[0].identity) + ",traces/x.h5,sidestep run a --seed 1\n"));
-  EXPECT_THAT(csv, HasSubstr("\nturn,imm,,failed,,"));
-  EXPECT_THAT(csv, ::testing::EndsWith(",,,\n"));
-}
-
-TEST(RunsCsv, HoldsEveryRowAlsoThoseThatFailed) {
-  std::vector<RunRow> rows = {Row("stop", "two_frame", "goal"), Row("stop", "two_frame", "failed")};
-  rows[0].metrics = {{"min_clearance_m", 0.125}, {"first_contact_s", NAN}};
-  rows[1].error = "a \"word\", quoted";
-  const std::string csv = RunsCsv(rows);
-  EXPECT_THAT(csv, HasSubstr("behaviour,predictor,outcome,error,first_contact_s,min_clearance_m,"));
-  EXPECT_THAT(csv, HasSubstr("\nstop,two_frame,goal,,,0.125,"));
-  EXPECT_THAT(csv, HasSubstr("\nstop,two_frame,failed,\"a \"\"word\"\", quoted\","));
 }
 
 TEST(RecordedRun, ThatThrowsIsARowThatSaysWhy) {

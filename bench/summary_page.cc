@@ -1,4 +1,4 @@
-#include "sidestep/bench/study_page.h"
+#include "sidestep/bench/summary_page.h"
 
 #include <map>
 #include <set>
@@ -112,11 +112,11 @@ std::string OutcomeTable(const std::vector<RunRow>& rows, const TableAxes& axes)
   return text + "\n";
 }
 
-std::string StudyPage(const StudySubject& subject, const std::vector<RunRow>& rows,
-                      const TableAxes& axes) {
-  return "# Study of " + TableCell(subject.scenario) + "\n\n" + TableCell(subject.description) +
-         "\n\n" + FactorLines(rows) + "- " + std::to_string(rows.size()) +
-         " episodes, made by\n\n      " + subject.command +
+std::string SummaryPage(const SweepSubject& subject, const std::vector<RunRow>& rows,
+                        const TableAxes& axes) {
+  return "# " + TableCell(subject.title) + "\n\n" + TableCell(subject.description) + "\n\n" +
+         FactorLines(rows) + "- " + std::to_string(rows.size()) + " episodes, made by\n\n      " +
+         subject.command +
          "\n\nHow many reached the goal and touched nothing, of how many, and how the others "
          "ended:\n\n" +
          OutcomeTable(rows, axes) + PairedText(rows, axes);
