@@ -14,12 +14,13 @@ namespace sidestep::scenarios {
 ///  - `delay_s: [LEAST, MOST]`: they all begin (and stop) later by one time;
 ///  - `sideways_m: [LEAST, MOST]`: they all go their way by one distance further to the left of
 ///    where they go at first.
-///  - `objects: [{name: NAME, ...}]`: besides, one of them alone, by speed_factor and delay_s of its
+///  - `objects: [{name: NAME, ...}]`: besides, one of them alone, by speed_factor and delay_s of
+///  its
 ///    own, by `yaw_rad: [LEAST, MOST]`, and from where it is by an offset: even, `within_m: [X, Y,
 ///    Z]` to either side, or normal, `deviation_m: [X, Y, Z]`. Drawn values are called NAME.KEY, of
 ///    an offset NAME.x_m and so on.
-/// Draws are even but for that, and one does not depend on whether there is another. A scenario without moving
-/// obstacles draws nothing. @throws InputError FILE:LINE: KEY: WHY.
+/// Draws are even but for that, and one does not depend on whether there is another. A scenario
+/// without moving obstacles draws nothing. @throws InputError FILE:LINE: KEY: WHY.
 void DrawVariations(const YamlReader& top, Scenario& scenario);
 
 /// Puts the speed of every moving obstacle in the place of the file's; what was drawn as
