@@ -118,7 +118,7 @@ TEST_P(HardScenario, IsARowOfAStudy) {
   const Finished finished =
       Sidestep({"study", scenario_.string(), "--knowledge", "prediction", "--out", out_.string()});
   EXPECT_EQ(finished.exit_code, is_aborted_ ? 1 : 0) << finished.err;
-  const std::string csv = BytesOf(out_ / "study.csv");
+  const std::string csv = BytesOf(out_ / "results.csv");
   EXPECT_THAT(csv, HasSubstr("," + expected_.outcome + ","));
   EXPECT_THAT(csv, HasSubstr(expected_.reason));
 }
