@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <functional>
+#include <optional>
 #include <utility>
 
 #include "sidestep/core/fingerprint.h"
