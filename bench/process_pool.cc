@@ -217,7 +217,7 @@ class Pool {
         }
       }
       tries_.erase(task);
-      done(task, {text, ""});
+      done(task, {text, "", false});
     }
   }
 
@@ -231,7 +231,7 @@ class Pool {
     }
     const int count = tries.kills + tries.crashes;
     tries_.erase(task);
-    done(task, {"", EndOf(status) + ", " + std::to_string(count) + " times"});
+    done(task, {"", EndOf(status) + ", " + std::to_string(count) + " times", WasKilled(status)});
   }
 
   // Waits for its end. @return its status.

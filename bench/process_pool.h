@@ -11,6 +11,8 @@ namespace sidestep::bench {
 struct ProcessAnswer {
   std::string text;        ///< what the task returned
   std::string why_failed;  ///< instead: how its process ended, each time that it was tried
+  /// It was killed, which says nothing of the task.
+  bool was_killed = false;
 };
 
 struct ProcessPoolOptions {

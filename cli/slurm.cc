@@ -1,5 +1,7 @@
 #include "sidestep/cli/slurm.h"
 
+#include <sys/wait.h>
+
 #include <array>
 #include <charconv>
 #include <cstdio>

@@ -252,6 +252,10 @@ bool SweepRunner::Run(const RunOptions& options) const {
       },
       [&](std::uint64_t index) { return bench::RowText(RunOne(index)); },
       [&](std::uint64_t index, const bench::ProcessAnswer& answer) {
+        if (answer.was_killed) {  // that says nothing of the run
+          PrintError("run {}: {}\n", index + 1, answer.why_failed);
+          return;
+        }
         const bool has_crashed = !answer.why_failed.empty();
         const std::string row =
             has_crashed ? bench::RowText(bench::FailedRow({}, answer.why_failed)) : answer.text;
@@ -262,8 +266,11 @@ bool SweepRunner::Run(const RunOptions& options) const {
       [&] { shard.Leave(); });
   shard.Sync();
   if (finished == missing.size()) return true;
-  PrintError("stopped by {}: {} of {} runs are finished, and the same command goes on\n",
-             signals.first(), count - missing.size() + finished, count);
+  PrintError("{}: {} of {} runs are finished, and the same command goes on\n",
+             signals.count() > 0
+                 ? "stopped by " + signals.first()
+                 : std::string("killed again and again, perhaps for want of memory"),
+             count - missing.size() + finished, count);
   return false;
 }
 

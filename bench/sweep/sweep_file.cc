@@ -1,9 +1,11 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <set>
 #include <utility>
 
@@ -202,6 +204,21 @@ void CheckGivenOnce(const YamlReader& top, const Sweep& sweep) {
   }
 }
 
+// Who searches has to know how long.
+void CheckSearch(const YamlReader& top, const Sweep& sweep) {
+  const auto fixed = sweep.settings.find("knowledge");
+  bool is_search = fixed != sweep.settings.end() && fixed->second == "search";
+  for (const SweepAxis& axis : sweep.axes) {
+    if (axis.name != "knowledge") continue;
+    is_search = is_search ||
+                std::find(axis.values.begin(), axis.values.end(), "search") != axis.values.end();
+  }
+  if (is_search && sweep.search == 0) {
+    top.Fail("search",
+             "how many guesses are searched is to be said, since `knowledge` is `search`");
+  }
+}
+
 }  // namespace
 
 Sweep ParseSweep(const std::string& text, const std::string& path) {
@@ -238,6 +255,7 @@ Sweep ParseSweep(const std::string& text, const std::string& path) {
       top.Fail("search", "must be from 1 to 100000 guesses");
     }
   }
+  CheckSearch(top, sweep);
   if (top.Has("traces")) {
     const std::string word =
         top.GetChoice("traces", {std::begin(kKeptTracesWords), std::end(kKeptTracesWords)});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <functional>
+#include <optional>
 #include <utility>
 
 #include "sidestep/core/fingerprint.h"
@@ -53,7 +54,7 @@ void SweepRows::ReadOne(std::size_t shard) {
       return;
     }
     place = {line.offset, hash, static_cast<std::uint32_t>(line.size),
-             static_cast<std::uint16_t>(shard),
+             static_cast<std::uint32_t>(shard),
              static_cast<std::uint16_t>(NumberOf(session.machine))};
     ++num_done_;
     ++outcomes_[StringAfter(line.text, "{\"o\":\"")];

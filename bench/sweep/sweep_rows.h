@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -51,8 +52,8 @@ class SweepRows {
  private:
   struct Place {
     std::uint64_t offset = 0, same = 0;  // a hash of what equal runs agree in
-    std::uint32_t size = 0;
-    std::uint16_t shard = 0, machine = 0;
+    std::uint32_t size = 0, shard = 0;
+    std::uint16_t machine = 0;
   };
 
   void ReadOne(std::size_t shard);

@@ -93,6 +93,8 @@ TEST(RunInProcesses, SaysOfATaskThatEndsEveryProcessHowItDoes) {
   EXPECT_THAT(answers.at(3).why_failed, StartsWith("its process ended with exit code 7"));
   EXPECT_THAT(answers.at(4).why_failed, StartsWith("its process was ended by signal 9"));
   EXPECT_THAT(answers.at(4).why_failed, HasSubstr(", 6 times"));
+  EXPECT_TRUE(answers.at(4).was_killed);
+  EXPECT_FALSE(answers.at(1).was_killed);
   EXPECT_EQ(answers.at(5).text, "done");
 }
 
