@@ -46,7 +46,9 @@ class Axis {
   std::vector<double> Ticks(int about) const {
     std::vector<double> ticks;
     if (is_log_) {
-      for (double power = std::floor(low_); power <= high_; ++power) {
+      const int first = static_cast<int>(std::floor(low_)),
+                last = static_cast<int>(std::floor(high_));
+      for (int power = first; power <= last; ++power) {
         for (const double factor : {1.0, 2.0, 5.0}) {
           const double place = power + std::log10(factor);
           if (place < low_ - 1e-9 || place > high_ + 1e-9) continue;
@@ -62,9 +64,9 @@ class Axis {
     for (const double factor : {5.0, 2.0, 1.0}) {
       if (factor * power >= 0.999 * rough) step = factor * power;
     }
-    for (double n = std::ceil(low_ / step - 1e-9); n * step <= high_ + 1e-9 * step; ++n) {
-      ticks.push_back(n * step + 0.0);
-    }
+    const auto first = std::ceil(low_ / step - 1e-9);
+    const int count = static_cast<int>(std::floor(high_ / step + 1e-9) - first) + 1;
+    for (int n = 0; n < count; ++n) ticks.push_back((first + n) * step + 0.0);
     return ticks;
   }
 
