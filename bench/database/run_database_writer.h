@@ -33,8 +33,8 @@ struct NumberedRun {
   std::string combination_command;  ///< RunRow::command without its seed; empty: none
 };
 
-/// The columns of factors of these names: valid for SQL, Planner Arena and each other.
-/// @param values of each factor.
+/// The columns of factors, each with its name and its values: valid for SQL, Planner Arena and each
+/// other.
 std::vector<FactorColumn> FactorColumnsOf(
     const std::vector<std::pair<std::string, std::vector<std::string>>>& factors);
 
