@@ -9,10 +9,10 @@
 namespace sidestep::cli {
 
 bench::RecordedRun RunCase(const std::string& scenario, const bench::Factors& factors, int guesses,
-                           const DataPaths& paths) {
+                           const DataPaths& paths, CheckedRobots* robots) {
   std::optional<Problem> problem;
   try {
-    problem = LoadCase(scenario, factors, paths);
+    problem = LoadCase(scenario, factors, paths, robots);
   } catch (const InputError& error) {
     return {bench::FailedRow({}, error.what()), {}};
   }

@@ -10,8 +10,8 @@ bool IsSearch(const bench::Factors& factors) {
   return knowledge != factors.end() && knowledge->second == kSearch;
 }
 
-Problem LoadCase(const std::string& scenario, const bench::Factors& factors,
-                 const DataPaths& paths) {
+Problem LoadCase(const std::string& scenario, const bench::Factors& factors, const DataPaths& paths,
+                 CheckedRobots* robots) {
   Overrides overrides;
   for (const auto& [factor, value] : factors) {
     if (factor == kSpeedFactor) {
@@ -24,7 +24,7 @@ Problem LoadCase(const std::string& scenario, const bench::Factors& factors,
       for (const auto& [key, one] : SettingsOf(factor, value)) overrides.settings[key] = one;
     }
   }
-  return LoadProblem(scenario, overrides, paths);
+  return LoadProblem(scenario, overrides, paths, robots);
 }
 
 std::string RunCommandOf(const std::string& scenario, const bench::Factors& factors) {

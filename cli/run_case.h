@@ -16,9 +16,10 @@ inline constexpr const char* kSpeedFactor = "speed_m_s";
 /// One run among many. Factors are keys of --set, several that vary together (cli/varied_keys.h),
 /// kSpeedFactor, and `knowledge`, `predictor` and `seed`, which stand for the flags of `sidestep
 /// run`.
+/// @param robots of the other runs, to which its own is added.
 /// @throws InputError if the combination makes no sense.
-Problem LoadCase(const std::string& scenario, const bench::Factors& factors,
-                 const DataPaths& paths);
+Problem LoadCase(const std::string& scenario, const bench::Factors& factors, const DataPaths& paths,
+                 CheckedRobots* robots);
 
 bool IsSearch(const bench::Factors& factors);
 

@@ -130,7 +130,7 @@ SweepRunner::Checked SweepRunner::Check() const {
   const auto check = [&](const bench::PlannedRun& run) {
     ++checked.num_checked;
     try {
-      const Problem problem = LoadCase(ScenarioOf(run), AllFactorsOf(run), paths_);
+      const Problem problem = LoadCase(ScenarioOf(run), AllFactorsOf(run), paths_, &robots_);
       const bench::RunIdentity identity = Identify(problem.scenario, paths_);
       inputs.Add(identity.scenario);
       inputs.Add(identity.models);
@@ -204,7 +204,7 @@ bench::ShardMaker SweepRunner::Prepare(bool again) const {
 bench::RunRow SweepRunner::RunOne(std::uint64_t index) const {
   const bench::PlannedRun run = plan_.At(index);
   bench::RecordedRun done =
-      RunCase(ScenarioOf(run), AllFactorsOf(run), plan_.sweep().search, paths_);
+      RunCase(ScenarioOf(run), AllFactorsOf(run), plan_.sweep().search, paths_, &robots_);
   if (done.recording && WantsTrace(done.row.outcome)) {
     AddProvenance(done.row.identity, *done.recording);
     record::WriteRecording(*done.recording, out_ + "/" + TraceOf(plan_.KeyOf(index)));

@@ -8,6 +8,7 @@
 #include "sidestep/bench/sweep/shard_file.h"
 #include "sidestep/bench/sweep/sweep.h"
 #include "sidestep/bench/sweep/sweep_rows.h"
+#include "sidestep/cli/checked_robots.h"
 #include "sidestep/cli/data_paths.h"
 
 namespace sidestep::cli {
@@ -72,6 +73,7 @@ class SweepRunner {
   const bench::SweepPlan& plan_;
   std::string folder_, out_;
   DataPaths paths_;
+  mutable CheckedRobots robots_;  // that were read for earlier runs
 };
 
 }  // namespace sidestep::cli

@@ -18,6 +18,7 @@
 #include "sidestep/bench/sweep/shard_file.h"
 #include "sidestep/cli/build_id.h"
 #include "sidestep/cli/case_row.h"
+#include "sidestep/cli/checked_robots.h"
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/jobs_option.h"
@@ -145,9 +146,9 @@ class Verification {
 
   std::string DifferencesOf(const Recorded& recorded) const {
     const std::string search = database_.Fact("search");
-    const bench::RunRow row =
-        RunCase(recorded.scenario, recorded.factors, search.empty() ? 0 : std::stoi(search), paths_)
-            .row;
+    const bench::RunRow row = RunCase(recorded.scenario, recorded.factors,
+                                      search.empty() ? 0 : std::stoi(search), paths_, &robots_)
+                                  .row;
     std::vector<std::string> different;
     const auto compare = [&](const std::string& column, const std::string& now) {
       const auto then = recorded.values.find(column);
@@ -172,6 +173,7 @@ class Verification {
 
   const VerifyOptions& options_;
   DataPaths paths_;
+  mutable CheckedRobots robots_;  // that were read for earlier runs
   bench::RunDatabase database_;
 };
 

@@ -14,8 +14,6 @@
 #include "sidestep/scenarios/variations.h"
 #include "sidestep/sdf/prediction/registry.h"
 #include "sidestep/sdf/world_model.h"
-#include "sidestep/sim/arm_file.h"
-#include "sidestep/sim/robot_agreement.h"
 #include "sidestep/sim/simulation.h"
 
 namespace sidestep::cli {
@@ -130,13 +128,11 @@ void CheckRobotIsThere(const scenarios::Scenario& scenario, const ModelFolders& 
                                        : " (known: " + Joined(variants) + ")"));
 }
 
-Problem AddRobot(scenarios::Scenario scenario, const DataPaths& paths) {
+Problem AddRobot(scenarios::Scenario scenario, const DataPaths& paths, CheckedRobots* robots) {
   bench::ResolvePlanner(scenario);
   const ModelFolders models = paths.all_models();
   CheckRobotIsThere(scenario, models);
-  robot::RobotModel robot = RobotOf(scenario, models);
-  const std::string mjcf = RobotMjcf(scenario, models);
-  sim::CheckAgreement(robot, *sim::LoadArmFile(mjcf), mjcf);
+  robot::RobotModel robot = robots->Get(scenario, models);
   bench::ResolveTask(scenario, robot);
   return {std::move(scenario), std::move(robot)};
 }
@@ -176,12 +172,18 @@ scenarios::Settings ParseSettings(const std::vector<std::string>& texts) {
 }
 
 Problem LoadProblem(const std::string& name, const Overrides& overrides, const DataPaths& paths) {
+  CheckedRobots robots;
+  return LoadProblem(name, overrides, paths, &robots);
+}
+
+Problem LoadProblem(const std::string& name, const Overrides& overrides, const DataPaths& paths,
+                    CheckedRobots* robots) {
   scenarios::Scenario scenario = LoadOverridden(name, overrides, paths);
   if (scenario.robot.empty()) {
     throw InputError("SCENARIO", "'" + name + "' has no robot: it can be drawn (sidestep field) " +
                                      "and timed (sidestep reproduce sdf_timing), but not run");
   }
-  Problem problem = AddRobot(std::move(scenario), paths);
+  Problem problem = AddRobot(std::move(scenario), paths, robots);
   if (overrides.safety && *overrides.safety != "off" && problem.robot.capsules().empty()) {
     throw InputError("--safety", problem.robot.name() + " has no capsules to be supervised by");
   }
@@ -195,7 +197,8 @@ Scene LoadScene(const std::string& name, const Overrides& overrides, const DataP
         std::make_shared<sim::Simulation>(scenario, paths.all_models(), &MakeSensor));
     return {std::move(scenario), std::move(world)};
   }
-  Problem problem = AddRobot(std::move(scenario), paths);
+  CheckedRobots robots;
+  Problem problem = AddRobot(std::move(scenario), paths, &robots);
   bench::EpisodeWorld world = SimulatedWorlds(paths)(problem.scenario, problem.robot);
   return {std::move(problem.scenario), std::move(world)};
 }

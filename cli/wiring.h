@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sidestep/bench/episode.h"
+#include "sidestep/cli/checked_robots.h"
 #include "sidestep/cli/data_paths.h"
 #include "sidestep/robot/robot_model.h"
 #include "sidestep/scenarios/scenario.h"
@@ -40,6 +41,9 @@ robot::RobotModel RobotOf(const scenarios::Scenario& scenario, const ModelFolder
 /// @throws InputError.
 Problem LoadProblem(const std::string& scenario, const Overrides& overrides,
                     const DataPaths& paths);
+/// The same, one of many. @param robots those of the others, to which its own is added.
+Problem LoadProblem(const std::string& scenario, const Overrides& overrides, const DataPaths& paths,
+                    CheckedRobots* robots);
 
 /// A scenario's simulated world at time 0.
 struct Scene {
