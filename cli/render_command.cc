@@ -19,6 +19,7 @@
 #include "sidestep/cli/trace_files.h"
 #include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
+#include "sidestep/record/recording_file.h"
 #include "sidestep/render/comparison.h"
 #include "sidestep/render/gl_context.h"
 #include "sidestep/render/video.h"
@@ -168,14 +169,23 @@ int RenderChosen(const RenderOptions& options) {
   const std::string folder = MakeOutFolder(options.video, {});
   const RunTraces traces(database, options.database);
   int num_films = 0;
+  bool is_one_damaged = false;
   for (const bench::ChosenRun& run : runs) {
     RenderOptions film = TracesOf(run, traces, options);
     if (film.traces.empty()) continue;
     film.video = folder + "/run-" + std::to_string(run.id) + ".mp4";
     Print("run {}: {}\n", run.id, run.what);
+    try {
+      for (const std::string& trace : film.traces) record::ReadRecording(trace);
+    } catch (const InputError& error) {  // the other films do not need it
+      PrintError("{}\n", error.what());
+      is_one_damaged = true;
+      continue;
+    }
     if (RenderTraces(film) != 0) return 1;
     ++num_films;
   }
+  if (is_one_damaged) return 1;
   if (num_films > 0) return 0;
   PrintError("no trace of these runs is kept (a sweep keeps them with `traces: all`)\n");
   return 1;

@@ -53,15 +53,20 @@ bench::ReportReplays MakeReplays(const bench::RunDatabase& database,
     if (paths.empty()) continue;
     ReplayOptions replay;
     replay.titles = titles;
-    const render::ReplaySet set =
-        MakeReplaySet(ReadTraces(paths), FindDataPaths(options.models), replay);
+    std::optional<render::ReplaySet> set;
+    try {
+      set = MakeReplaySet(ReadTraces(paths), FindDataPaths(options.models), replay);
+    } catch (const InputError& error) {  // the figures do not need it
+      PrintError("no replay: {}\n", error.what());
+      continue;
+    }
     std::string title = "seed " + std::to_string(runs.seed[of]);
     for (std::size_t f = 0; f < runs.factors.size(); ++f) {
       if (static_cast<int>(f) == source.question().factor) continue;
       title += ", " + runs.factors[f].name + " " +
                runs.factors[f].values[static_cast<std::size_t>(runs.levels[f][of])];
     }
-    replays.replays.push_back({title, render::ReplayJson(set)});
+    replays.replays.push_back({title, render::ReplayJson(*set)});
   }
   if (!replays.replays.empty()) {
     replays.style = render::ReplayStyle();

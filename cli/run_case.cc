@@ -1,9 +1,28 @@
 #include "sidestep/cli/run_case.h"
 
+#include <charconv>
+#include <system_error>
+
 #include "sidestep/cli/shell_quote.h"
 #include "sidestep/cli/varied_keys.h"
+#include "sidestep/core/input_error.h"
 
 namespace sidestep::cli {
+
+namespace {
+
+double SpeedOf(const std::string& text) {
+  constexpr double kMost_m_s = 100;
+  double speed_m_s = 0;
+  const char* const end = text.data() + text.size();
+  const auto [last, error] = std::from_chars(text.data(), end, speed_m_s);
+  if (error != std::errc() || last != end || !(speed_m_s >= 0 && speed_m_s <= kMost_m_s)) {
+    throw InputError(kSpeedFactor, "must be a number from 0 to 100, is '" + text + "'");
+  }
+  return speed_m_s;
+}
+
+}  // namespace
 
 bool IsSearch(const bench::Factors& factors) {
   const auto knowledge = factors.find("knowledge");
@@ -15,7 +34,7 @@ Problem LoadCase(const std::string& scenario, const bench::Factors& factors, con
   Overrides overrides;
   for (const auto& [factor, value] : factors) {
     if (factor == kSpeedFactor) {
-      overrides.speed_m_s = std::stod(value);
+      overrides.speed_m_s = SpeedOf(value);
     } else if (factor == "knowledge") {
       if (value != kSearch) overrides.knowledge = value;
     } else if (factor == "predictor") {

@@ -101,8 +101,11 @@ void PrintPlan(const bench::SweepPlan& plan) {
                            ? std::to_string(sweep.seeds.front())
                            : fmt::format("{} ({} to {})", sweep.seeds.size(), sweep.seeds.front(),
                                          sweep.seeds.back()));
-  Print("\n{} runs: {} combinations, each with {} seed{}; plan {}\n", plan.num_runs(),
-        plan.num_combinations(), sweep.seeds.size(), sweep.seeds.size() == 1 ? "" : "s",
+  const auto counted = [](std::uint64_t number, const char* what) {
+    return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
+  };
+  Print("\n{}: {}, each with {}; plan {}\n", counted(plan.num_runs(), "run"),
+        counted(plan.num_combinations(), "combination"), counted(sweep.seeds.size(), "seed"),
         plan.Hash());
 }
 
@@ -117,6 +120,7 @@ int Plan(const SweepOptions& options) {
   for (std::size_t i = 0; i < std::min(checked.refused.size(), kRefusedShown); ++i) {
     Print("  {}\n", checked.refused[i]);
   }
+  asked.runner().CheckSeeds(checked);
   return 0;
 }
 

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "sidestep/bench/json_text.h"
@@ -125,22 +126,20 @@ SweepRunner::Checked SweepRunner::Check() const {
     }
   }
   Checked checked;
-  Fingerprint inputs;
+  std::set<std::string> models;
   std::exception_ptr first_error;
   const auto check = [&](const bench::PlannedRun& run) {
     ++checked.num_checked;
     try {
       const Problem problem = LoadCase(ScenarioOf(run), AllFactorsOf(run), paths_, &robots_);
       const bench::RunIdentity identity = Identify(problem.scenario, paths_);
-      inputs.Add(identity.scenario);
-      inputs.Add(identity.models);
+      models.insert(identity.models);
       checked.seed_matters =
           checked.seed_matters || !scenarios::WhatTheSeedChanges(problem.scenario).empty();
       if (checked.description.empty()) checked.description = problem.scenario.description;
       return true;
     } catch (const InputError& error) {
       if (!first_error) first_error = std::current_exception();
-      inputs.Add("refused");
       std::string what = run.scenario;
       for (const auto& [factor, value] : run.factors) what += ", " + factor + " " + value;
       checked.refused.push_back(what + ": " + error.what());
@@ -155,8 +154,31 @@ SweepRunner::Checked SweepRunner::Check() const {
     can_be_run = check(plan_.At(plan_.FirstOf(c)));
   }
   if (!can_be_run) std::rethrow_exception(first_error);
+  // Without the values that are varied, so that there may be others some other time.
+  Fingerprint inputs;
+  for (const std::string& scenario : sweep.scenarios) {
+    bench::PlannedRun plain = first(scenario);
+    plain.factors.clear();
+    try {
+      inputs.Add(IdentityOf(plain).scenario);
+    } catch (const InputError&) {
+      inputs.Add("needs what is varied");
+    }
+  }
+  for (const std::string& robot : models) inputs.Add(robot);
   checked.inputs = inputs.Text();
   return checked;
+}
+
+bench::RunIdentity SweepRunner::IdentityOf(const bench::PlannedRun& run) const {
+  return Identify(LoadCase(ScenarioOf(run), AllFactorsOf(run), paths_, &robots_).scenario, paths_);
+}
+
+void SweepRunner::CheckSeeds(const Checked& checked) const {
+  if (plan_.sweep().seeds.size() < 2 || checked.seed_matters) return;
+  throw InputError(plan_.sweep().name + ": seeds",
+                   "a seed changes nothing: the scenario has no variations, nothing walks at "
+                   "random, and its sensor is perfect");
 }
 
 bench::ShardMaker SweepRunner::Maker() const {
@@ -170,11 +192,7 @@ bench::ShardMaker SweepRunner::Maker() const {
 
 bench::ShardMaker SweepRunner::Prepare(bool again) const {
   const Checked checked = Check();
-  if (plan_.sweep().seeds.size() > 1 && !checked.seed_matters) {
-    throw InputError(plan_.sweep().name + ": seeds",
-                     "a seed changes nothing: the scenario has no variations, nothing walks at "
-                     "random, and its sensor is perfect");
-  }
+  CheckSeeds(checked);
   bench::ShardMaker maker{BuildId(), checked.inputs};
   MakeOutFolder(out_, {"plan.json"});
   MakeOutFolder(shards(), {});
@@ -188,8 +206,8 @@ bench::ShardMaker SweepRunner::Prepare(bool again) const {
           out_,
           std::string("holds runs of ") +
               (before.build != maker.build ? "another build of sidestep"
-                                           : "other scenarios or robots (a file of theirs has "
-                                             "changed)") +
+                                           : "other scenarios, settings or robots (a file of "
+                                             "theirs has changed, or `set` or `variations`)") +
               ": take another folder by --out, or let --again run them again (what is there "
               "stays in the shards, and counts no more)");
     }

@@ -27,7 +27,8 @@ class SweepRunner {
   /// What resolving showed: each scenario with each value of each axis, the other axes at their
   /// first ones. So every file that the sweep needs was read, and every value judged.
   struct Checked {
-    std::string inputs;       ///< a fingerprint of the resolved scenarios and their robots
+    /// A fingerprint of the scenarios, resolved without what is varied, and of all robots.
+    std::string inputs;
     std::string description;  ///< of the first scenario that can be run
     bool seed_matters = false;
     int num_checked = 0;
@@ -35,6 +36,9 @@ class SweepRunner {
   };
   /// @throws InputError if nothing can be run.
   Checked Check() const;
+
+  /// @throws InputError if seeds are counted and change nothing.
+  void CheckSeeds(const Checked& checked) const;
 
   /// Makes the folder ready for rows of this program and these inputs.
   /// @param again rows of another build or of other inputs may be there, and do not count.
@@ -65,6 +69,7 @@ class SweepRunner {
   std::string CommandOf(const bench::PlannedRun& run) const;
 
  private:
+  bench::RunIdentity IdentityOf(const bench::PlannedRun& run) const;
   bench::Factors AllFactorsOf(const bench::PlannedRun& run) const;
   std::string ScenarioOf(const bench::PlannedRun& run) const;
   std::string TraceOf(std::uint64_t key) const;

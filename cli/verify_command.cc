@@ -63,6 +63,7 @@ class Verification {
 
   int Run() {
     const std::vector<Recorded> sample = Sample();
+    if (sample.empty()) throw InputError(options_.database, "holds no runs");
     TellCircumstances();
     std::map<std::size_t, std::string> differences;
     const StopSignals signals;

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <functional>
 #include <iterator>
 #include <set>
+#include <system_error>
 #include <utility>
 
 #include "sidestep/bench/sweep/sweep.h"
@@ -22,6 +24,7 @@ namespace {
 
 constexpr std::uintmax_t kMaxBytes = 1 << 20;
 constexpr double kMostValues = 100'000;  // of an axis
+constexpr std::uint64_t kMostSeeds = 10'000'000;
 constexpr std::uint64_t kLargestSeed = 2147483647;
 
 // A scalar as it can stand in a list of YAML.
@@ -61,6 +64,14 @@ std::string SettingText(const YamlValue& value, bool is_inner = false) {
          "}";
 }
 
+// A number in one form, whatever it is written as; anything else as it is.
+std::string AsNumber(const std::string& text) {
+  double number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [last, error] = std::from_chars(text.data(), end, number);
+  return error == std::errc() && last == end ? ShortestText(number) : text;
+}
+
 // Reads what the strict reader has no getter for: values of any kind.
 class AxisReader {
  public:
@@ -81,7 +92,7 @@ class AxisReader {
     }
     std::set<std::string> seen;
     for (const std::string& one : axis.values) {
-      if (!seen.insert(one).second) map_.Fail(name, "'" + one + "' is given twice");
+      if (!seen.insert(AsNumber(one)).second) map_.Fail(name, "'" + one + "' is given twice");
     }
     return axis;
   }
@@ -120,7 +131,11 @@ class AxisReader {
   const YamlValue& tree_;
 };
 
-std::vector<std::uint64_t> SeedsFromTo(std::uint64_t first, std::uint64_t last) {
+std::vector<std::uint64_t> SeedsFromTo(const YamlReader& top, std::uint64_t first,
+                                       std::uint64_t last) {
+  if (last - first >= kMostSeeds) {
+    top.Fail("seeds", "must be at most " + std::to_string(kMostSeeds));
+  }
   std::vector<std::uint64_t> seeds;
   for (std::uint64_t seed = first; seed <= last; ++seed) seeds.push_back(seed);
   return seeds;
@@ -137,7 +152,7 @@ std::vector<std::uint64_t> ReadSeeds(const YamlReader& top) {
   if (top.IsScalar("seeds")) {
     const int count = top.GetInt("seeds");
     if (count < 1) top.Fail("seeds", "must be at least 1: how many, from seed 1 on");
-    return SeedsFromTo(1, static_cast<std::uint64_t>(count));
+    return SeedsFromTo(top, 1, static_cast<std::uint64_t>(count));
   }
   if (top.IsMap("seeds")) {
     const YamlReader range = top.GetMap("seeds");
@@ -145,7 +160,7 @@ std::vector<std::uint64_t> ReadSeeds(const YamlReader& top) {
     const std::uint64_t last = seed_of(range, "to", range.GetDouble("to"));
     range.CheckNoUnknownKeys();
     if (last < first) range.Fail("to", "must not be below `from`");
-    return SeedsFromTo(first, last);
+    return SeedsFromTo(top, first, last);
   }
   std::vector<std::uint64_t> seeds;
   std::set<std::uint64_t> seen;

@@ -188,7 +188,7 @@ TEST_F(SweepTest, GoesOnAfterAChangedCommentButNotAfterAChangedRobotOrScenario) 
   append("models/panda/robot.yaml", "# another robot, for all we know\n");
   const Finished robot = run();
   EXPECT_EQ(robot.exit_code, 2);
-  EXPECT_THAT(robot.err, HasSubstr("holds runs of other scenarios or robots"));
+  EXPECT_THAT(robot.err, HasSubstr("holds runs of other scenarios, settings or robots"));
 
   const Finished again = run({"--again"});
   EXPECT_EQ(again.exit_code, 0) << again.err;
@@ -208,12 +208,17 @@ TEST_F(SweepTest, RunsOnlyWhatIsNewWhenItsPlanGrowsAndLeavesOutWhatItLost) {
   const Finished grown = Sweep("run", "out");
   EXPECT_EQ(grown.exit_code, 0) << grown.err;
   EXPECT_THAT(grown.err, HasSubstr("32 of 40 runs, from before"));
+  more.replace(more.find("[stop, turn]"), 12, "[straight, stop, turn]");
+  Write(more);
+  const Finished wider = Sweep("run", "out");
+  EXPECT_EQ(wider.exit_code, 0) << wider.err;
+  EXPECT_THAT(wider.err, HasSubstr("40 of 60 runs, from before"));
   std::string less = kSweep;
   less.replace(less.find("[stop, turn]"), 12, "[stop]");
   Write(less);
   const Finished merged = Sweep("merge", "out");
   EXPECT_EQ(merged.exit_code, 0) << merged.err;
-  EXPECT_THAT(merged.err, HasSubstr("24 rows of runs that this plan does not hold do not count"));
+  EXPECT_THAT(merged.err, HasSubstr("44 rows of runs that this plan does not hold do not count"));
   EXPECT_EQ(bench::RunDatabase(DatabaseOf("out")).num_runs(), 16);
 }
 

@@ -44,8 +44,8 @@ class Replay {
       OccupancyGrid before = told_.static_occupancy();
       told_.Update(occupancy, t, {}, changes_.Update(occupancy));
       ASSERT_EQ(told_.static_occupancy().cells, tracker_.static_occupancy().cells);
-      if (told_.static_may_differ()) {
-        for (const std::size_t cell : *told_.static_may_differ()) {
+      if (const auto may_differ = told_.static_may_differ()) {
+        for (const std::size_t cell : *may_differ) {
           before.cells[cell] = told_.static_occupancy().cells[cell];
         }
         ASSERT_EQ(before.cells, told_.static_occupancy().cells);
