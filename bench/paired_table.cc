@@ -186,7 +186,8 @@ std::string PairedTable(const std::vector<RunRow>& rows, const TableAxes& axes) 
   };
   if (!down.empty()) {
     for (const std::string& line : FactorValues(rows, down)) {
-      add_rows(TableCell(line), [&](const Factors& factors) { return factors.at(down) == line; });
+      add_rows(TableCell(line),
+               [&, &key = down](const Factors& factors) { return factors.at(key) == line; });
     }
   }
   add_rows("all", [](const Factors&) { return true; });

@@ -40,7 +40,7 @@ std::map<std::int64_t, Eigen::VectorXd> ReadJoints(const std::string& path, int 
         static_cast<std::int64_t>(ParseCsvNumber(row.fields[0], path, row.line, "number"));
     Eigen::VectorXd q(num_joints);
     for (int j = 0; j < num_joints; ++j) {
-      const auto field = static_cast<std::size_t>(j + 1);
+      const auto field = static_cast<std::size_t>(j) + 1;
       q(j) = ParseCsvNumber(row.fields[field], path, row.line, columns[field]);
     }
     if (!joints.emplace(number, q).second) {
