@@ -1,9 +1,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -14,6 +14,7 @@
 #include "sidestep/cli/console.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/number_text.h"
+#include "sidestep/core/parse_number.h"
 
 namespace sidestep::cli {
 namespace {
@@ -64,12 +65,9 @@ std::string ShortName(const std::string& key, const std::vector<std::string>& ke
 
 // A number that is no whole one, to four digits.
 std::string RoundedNumber(const std::string& word) {
-  double number = 0;
-  const char* const end = word.data() + word.size();
-  const auto parsed = std::from_chars(word.data(), end, number);
-  const bool is_fraction = word.find_first_of(".e") != std::string::npos &&
-                           parsed.ec == std::errc() && parsed.ptr == end;
-  return is_fraction ? fmt::format("{:.4g}", number) : word;
+  const std::optional<double> number = NumberIn<double>(word);
+  const bool is_fraction = number && word.find_first_of(".e") != std::string::npos;
+  return is_fraction ? fmt::format("{:.4g}", *number) : word;
 }
 
 // The same of each number of a list, [0.1,2].

@@ -98,7 +98,8 @@ bool ShowProgress(int done, int total) {
   return interrupted == 0;
 }
 
-int RenderTraces(const RenderOptions& options) {
+// What is asked for, if it can be made. @throws InputError.
+render::PictureOptions PictureOf(const RenderOptions& options) {
   if (options.video.empty() && options.still.empty()) {
     throw InputError("--out", "give --out FILE.mp4, --still FILE.png, or both");
   }
@@ -109,8 +110,11 @@ int RenderTraces(const RenderOptions& options) {
   picture.camera = options.camera;
   picture.titles = options.titles;
   picture.playback_speed = options.playback_speed;
+  return picture;
+}
 
-  const std::vector<render::NamedRecording> traces = ReadTraces(options.traces);
+int RenderTraces(const RenderOptions& options, const render::PictureOptions& picture,
+                 const std::vector<render::NamedRecording>& traces) {
   const render::GlContext gl;
   render::Comparison comparison(gl, traces, picture);
   for (const std::string& name : comparison.names_not_shown()) {
@@ -175,14 +179,16 @@ int RenderChosen(const RenderOptions& options) {
     if (film.traces.empty()) continue;
     film.video = folder + "/run-" + std::to_string(run.id) + ".mp4";
     Print("run {}: {}\n", run.id, run.what);
+    const render::PictureOptions picture = PictureOf(film);
+    std::vector<render::NamedRecording> recordings;
     try {
-      for (const std::string& trace : film.traces) record::ReadRecording(trace);
+      recordings = ReadTraces(film.traces);
     } catch (const InputError& error) {  // the other films do not need it
       PrintError("{}\n", error.what());
       is_one_damaged = true;
       continue;
     }
-    if (RenderTraces(film) != 0) return 1;
+    if (RenderTraces(film, picture, recordings) != 0) return 1;
     ++num_films;
   }
   if (is_one_damaged) return 1;
@@ -194,7 +200,8 @@ int RenderChosen(const RenderOptions& options) {
 int Render(const RenderOptions& options) {
   if (!options.database.empty()) return RenderChosen(options);
   if (options.traces.empty()) throw InputError("TRACE", "give one or more traces, or --from DB");
-  return RenderTraces(options);
+  const render::PictureOptions picture = PictureOf(options);
+  return RenderTraces(options, picture, ReadTraces(options.traces));
 }
 
 }  // namespace

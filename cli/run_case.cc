@@ -1,25 +1,22 @@
 #include "sidestep/cli/run_case.h"
 
-#include <charconv>
-#include <system_error>
+#include <optional>
 
 #include "sidestep/cli/shell_quote.h"
 #include "sidestep/cli/varied_keys.h"
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/parse_number.h"
 
 namespace sidestep::cli {
-
 namespace {
 
 double SpeedOf(const std::string& text) {
   constexpr double kMost_m_s = 100;
-  double speed_m_s = 0;
-  const char* const end = text.data() + text.size();
-  const auto [last, error] = std::from_chars(text.data(), end, speed_m_s);
-  if (error != std::errc() || last != end || !(speed_m_s >= 0 && speed_m_s <= kMost_m_s)) {
+  const std::optional<double> speed_m_s = NumberIn<double>(text);
+  if (!speed_m_s || !(*speed_m_s >= 0 && *speed_m_s <= kMost_m_s)) {
     throw InputError(kSpeedFactor, "must be a number from 0 to 100, is '" + text + "'");
   }
-  return speed_m_s;
+  return *speed_m_s;
 }
 
 }  // namespace

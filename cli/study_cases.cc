@@ -1,7 +1,6 @@
 #include "sidestep/cli/study_cases.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -12,6 +11,7 @@
 #include "sidestep/cli/run_case.h"
 #include "sidestep/cli/varied_keys.h"
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/parse_number.h"
 #include "sidestep/scenarios/scenario.h"
 #include "sidestep/scenarios/yaml_text.h"
 #include "sidestep/sdf/prediction/registry.h"
@@ -71,10 +71,8 @@ std::optional<std::uint64_t> TakeSeed(const StudySpace& space, scenarios::Settin
   if (fixed == settings.end()) return {};
   const std::string text = settings.extract(fixed).mapped();
   if (space.episodes > 0) throw InputError("--set seed", "is what --episodes varies");
-  std::uint64_t seed = 0;
-  const char* const end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data(), end, seed);
-  if (parsed.ec != std::errc() || parsed.ptr != end) {
+  const auto seed = NumberIn<std::uint64_t>(text);
+  if (!seed) {
     throw InputError("--set seed", "must be a whole number >= 0, is '" + text + "'");
   }
   return seed;

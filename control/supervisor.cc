@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kLogLength = 1024;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Of the tool's speed: a compliant arm comes up to half a hundredth over what it is told.
+// Of the tool's speed: a compliant arm comes some 2 % over what it is told.
 constexpr double kToolShare = 0.98;
 
 constexpr HorizonOffset kToldAgain(

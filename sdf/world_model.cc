@@ -112,7 +112,7 @@ class MappedWorld : public WorldModel {
   }
 
   // All cells of what is taken in that may not be as they were before; none: any may.
-  const std::optional<std::span<const std::size_t>>& may_differ() const { return may_differ_; }
+  const MayDiffer& may_differ() const { return may_differ_; }
   // Which cells solids fill in the latest scans.
   CellRule rule() const { return rule_; }
 
@@ -140,7 +140,7 @@ class MappedWorld : public WorldModel {
   bool was_of_map_ = false;  // the latest occupancy: without named objects drawn into it
   GridChanges changes_;
   std::span<const std::size_t> changed_;
-  std::optional<std::span<const std::size_t>> may_differ_;
+  MayDiffer may_differ_;
 };
 
 // Knowledge::kStatic

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace sidestep::sim {
-
 namespace {
 
 std::vector<int> OthersOf(const WorldGeoms& geoms) {
@@ -56,8 +56,7 @@ void SimulatedTruth::Observe() {
   const Pair* deepest_pair = nullptr;
   Touch deepest;
   deepest.depth_m = -1;
-  const std::vector<Pair> none;
-  for (const Pair& pair : MayTouch() ? pairs_ : none) {
+  for (const Pair& pair : std::span(pairs_).first(MayTouch() ? pairs_.size() : 0)) {
     if (distance_.LowerBound(data, pair.robot_geom, pair.other_geom) > 0) continue;
     const auto touch = FindTouch(model, data, pair.robot_geom, pair.other_geom);
     if (!touch) continue;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
-#include <charconv>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -22,6 +21,7 @@
 #include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
+#include "sidestep/core/parse_number.h"
 
 namespace sidestep::bench {
 namespace {
@@ -39,11 +39,7 @@ std::vector<std::string> OutcomeWords() {
   return words;
 }
 
-bool IsNumber(const std::string& text) {
-  double number = 0;
-  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), number);
-  return parsed.ec == std::errc() && parsed.ptr == text.data() + text.size();
-}
+bool IsNumber(const std::string& text) { return NumberIn<double>(text).has_value(); }
 
 // A name as SQL and Planner Arena take it without quotes.
 std::string ColumnText(const std::string& name) {

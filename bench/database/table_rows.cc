@@ -2,6 +2,7 @@
 
 #include "sidestep/bench/metrics/registry.h"
 #include "sidestep/core/number_text.h"
+#include "sidestep/core/parse_number.h"
 
 namespace sidestep::bench {
 namespace {
@@ -17,7 +18,7 @@ std::string ValueAsSwept(const FactorColumn& factor, const SqlStatement& row, in
   if (!factor.is_number) return row.Text(column);
   const double number = row.Number(column);
   for (const std::string& value : factor.values) {
-    if (std::stod(value) == number) return value;
+    if (NumberIn<double>(value) == number) return value;
   }
   return ShortestText(number);
 }

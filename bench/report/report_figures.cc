@@ -1,6 +1,5 @@
 #include "sidestep/bench/report/report_figures.h"
 
-#include <charconv>
 #include <limits>
 #include <numeric>
 
@@ -8,6 +7,7 @@
 #include "sidestep/bench/run_row.h"
 #include "sidestep/bench/statistics.h"
 #include "sidestep/core/number_text.h"
+#include "sidestep/core/parse_number.h"
 
 namespace sidestep::bench {
 namespace {
@@ -28,11 +28,7 @@ bool IsAt(const RunTable& runs, std::size_t run, int factor, int level) {
   return factor < 0 || runs.levels[static_cast<std::size_t>(factor)][run] == level;
 }
 
-double NumberOf(const std::string& text) {
-  double number = kNone;
-  std::from_chars(text.data(), text.data() + text.size(), number);
-  return number;
-}
+double NumberOf(const std::string& text) { return NumberIn<double>(text).value_or(kNone); }
 
 // The axis of a factor's levels, and where each stands on it.
 std::vector<double> LayOut(const RunTable& runs, int factor, Panel* panel) {

@@ -1,22 +1,15 @@
 #include "sidestep/bench/report/run_table.h"
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 #include <optional>
 #include <set>
 
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/parse_number.h"
 
 namespace sidestep::bench {
 namespace {
-
-std::optional<double> NumberIn(const std::string& text) {
-  double number = 0;
-  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (parsed.ec != std::errc() || parsed.ptr != text.data() + text.size()) return std::nullopt;
-  return number;
-}
 
 // Finds the place of what the database holds among a factor's values.
 class Levels {
@@ -45,7 +38,7 @@ class Levels {
   void Add(int level) {
     const std::string& value = factor_.values[static_cast<std::size_t>(level)];
     by_text_[value] = level;
-    if (const auto number = NumberIn(value); number && factor_.is_number) {
+    if (const auto number = NumberIn<double>(value); number && factor_.is_number) {
       by_number_[*number] = level;
     }
   }

@@ -2,19 +2,19 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <functional>
 #include <iterator>
+#include <optional>
 #include <set>
-#include <system_error>
 #include <utility>
 
 #include "sidestep/bench/sweep/sweep.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
 #include "sidestep/core/number_text.h"
+#include "sidestep/core/parse_number.h"
 #include "sidestep/core/text_file.h"
 #include "sidestep/core/yaml_reader.h"
 #include "sidestep/core/yaml_tree.h"
@@ -66,10 +66,8 @@ std::string SettingText(const YamlValue& value, bool is_inner = false) {
 
 // A number in one form, whatever it is written as; anything else as it is.
 std::string AsNumber(const std::string& text) {
-  double number = 0;
-  const char* const end = text.data() + text.size();
-  const auto [last, error] = std::from_chars(text.data(), end, number);
-  return error == std::errc() && last == end ? ShortestText(number) : text;
+  const std::optional<double> number = NumberIn<double>(text);
+  return number ? ShortestText(*number) : text;
 }
 
 // Reads what the strict reader has no getter for: values of any kind.

@@ -5,8 +5,8 @@
 
 namespace sidestep::sdf {
 
-std::span<const std::size_t> GridChanges::Update(
-    const OccupancyGrid& grid, const std::optional<std::span<const std::size_t>>& may_differ) {
+std::span<const std::size_t> GridChanges::Update(const OccupancyGrid& grid,
+                                                 const MayDiffer& may_differ) {
   constexpr std::size_t kBlock = 4096;
   const std::vector<std::uint8_t>& cells = grid.cells;
   last_.resize(cells.size(), 0);

@@ -10,16 +10,17 @@
 
 namespace sidestep::sdf {
 
+/// All cells of a grid that may not be as they were the last time, in any order and more than once;
+/// none: any may.
+using MayDiffer = std::optional<std::span<const std::size_t>>;
+
 /// Finds what has changed in a grid of cells from one time to the next, so that whoever follows it
 /// need not look at all of it: most of a room stays as it is.
 class GridChanges {
  public:
   /// The cells that are not as they were at the last call, ascending; at the first, those that are
   /// not free. Valid until the next call. The number of cells may not change.
-  /// @param may_differ all cells that may have changed, in any order and more than once; none: any.
-  std::span<const std::size_t> Update(
-      const OccupancyGrid& grid,
-      const std::optional<std::span<const std::size_t>>& may_differ = {});
+  std::span<const std::size_t> Update(const OccupancyGrid& grid, const MayDiffer& may_differ = {});
 
  private:
   std::vector<std::uint8_t> last_;

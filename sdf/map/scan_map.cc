@@ -27,7 +27,7 @@ const OccupancyGrid& ScanMap::Update(const Scan& scan) {
   return fused_;
 }
 
-std::optional<std::span<const std::size_t>> ScanMap::may_differ() const {
+MayDiffer ScanMap::may_differ() const {
   if (solids_.size() != 1 || surfaces_) return std::nullopt;
   return solids_.begin()->second.may_differ();
 }

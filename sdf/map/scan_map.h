@@ -11,6 +11,7 @@
 #include "sidestep/core/grid.h"
 #include "sidestep/core/observations.h"
 #include "sidestep/sdf/map/evidence_map.h"
+#include "sidestep/sdf/map/grid_changes.h"
 #include "sidestep/sdf/map/occupancy_from_scan.h"
 
 namespace sidestep::sdf {
@@ -31,7 +32,7 @@ class ScanMap {
   const OccupancyGrid& Update(const Scan& scan);
 
   /// All cells of what is filled that the latest scan may have changed; none: any.
-  std::optional<std::span<const std::size_t>> may_differ() const;
+  MayDiffer may_differ() const;
 
   /// Not 0 for each cell that a camera's latest scan looked at; empty: sensors of solids look
   /// everywhere.

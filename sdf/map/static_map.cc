@@ -2,8 +2,7 @@
 
 namespace sidestep::sdf {
 
-void StaticMap::Set(const OccupancyGrid& occupancy,
-                    const std::optional<std::span<const std::size_t>>& may_differ) {
+void StaticMap::Set(const OccupancyGrid& occupancy, const MayDiffer& may_differ) {
   const bool is_of_same_grid = occupancy.spec == occupancy_.spec;
   if (may_differ && is_of_same_grid) {
     for (const std::size_t cell : *may_differ) {

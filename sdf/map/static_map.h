@@ -7,6 +7,7 @@
 
 #include "sidestep/core/grid.h"
 #include "sidestep/sdf/map/fast_distance_transform.h"
+#include "sidestep/sdf/map/grid_changes.h"
 #include "sidestep/sdf/map/sdf_grid.h"
 
 namespace sidestep::sdf {
@@ -17,9 +18,7 @@ class StaticMap {
   explicit StaticMap(DistanceConvention convention = DistanceConvention::kSurface)
       : convention_(convention) {}
 
-  /// @param may_differ all cells that may not be as they were the last time; none: any may.
-  void Set(const OccupancyGrid& occupancy,
-           const std::optional<std::span<const std::size_t>>& may_differ = {});
+  void Set(const OccupancyGrid& occupancy, const MayDiffer& may_differ = {});
 
   /// Of the occupancy last set; there must be one.
   std::shared_ptr<const SdfGrid> Field();

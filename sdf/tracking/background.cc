@@ -15,8 +15,7 @@ void Background::Absorb(int id, const Component& component) {
   for (const std::size_t cell : component.cells) is_background_[cell] = 1;
 }
 
-void Background::TakeIn(const OccupancyGrid& occupancy,
-                        const std::optional<std::span<const std::size_t>>& may_differ) {
+void Background::TakeIn(const OccupancyGrid& occupancy, const MayDiffer& may_differ) {
   if (!may_differ) {
     foreground_.MarkAll();
     may_have_vanished_ = true;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sidestep/core/grid.h"
+#include "sidestep/sdf/map/grid_changes.h"
 #include "sidestep/sdf/tracking/segmentation.h"
 
 namespace sidestep::sdf {
@@ -23,10 +24,8 @@ class Background {
   /// Makes a component background, owned by `id` until that is released.
   void Absorb(int id, const Component& component);
 
-  /// What is filled has changed. @param may_differ all cells that may not be as they were the last
-  /// time; none: any may.
-  void TakeIn(const OccupancyGrid& occupancy,
-              const std::optional<std::span<const std::size_t>>& may_differ);
+  /// What is filled has changed.
+  void TakeIn(const OccupancyGrid& occupancy, const MayDiffer& may_differ);
 
   /// Lets go of the cells that are free now. An owner that has lost more than this share of its
   /// cells since it was absorbed does not rest any more: all its cells are released, so that it is

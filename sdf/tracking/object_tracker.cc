@@ -102,8 +102,7 @@ ObjectTracker::ObjectTracker(const GridSpec& grid, const ObjectTrackerOptions& o
 }
 
 TrackerTimes ObjectTracker::Update(const OccupancyGrid& occupancy, EpisodeTime t,
-                                   const Sight& sight,
-                                   const std::optional<std::span<const std::size_t>>& may_differ) {
+                                   const Sight& sight, const MayDiffer& may_differ) {
   if (occupancy.spec != grid_) throw std::invalid_argument("ObjectTracker: another grid");
   for (const auto& bytes : {sight.seen, sight.once_free}) {
     if (bytes.empty() || bytes.size() == occupancy.cells.size()) continue;
@@ -171,8 +170,7 @@ TrackerTimes ObjectTracker::Update(const OccupancyGrid& occupancy, EpisodeTime t
   return times;
 }
 
-void ObjectTracker::CopyStatic(const OccupancyGrid& occupancy,
-                               const std::optional<std::span<const std::size_t>>& may_differ) {
+void ObjectTracker::CopyStatic(const OccupancyGrid& occupancy, const MayDiffer& may_differ) {
   knows_differences_ = may_differ && static_occupancy_.spec == occupancy.spec;
   static_may_differ_.clear();
   if (knows_differences_) {

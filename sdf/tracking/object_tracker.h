@@ -12,6 +12,7 @@
 #include "sidestep/core/samples.h"
 #include "sidestep/core/time.h"
 #include "sidestep/sdf/map/distance_transform.h"
+#include "sidestep/sdf/map/grid_changes.h"
 #include "sidestep/sdf/prediction/motion_filter.h"
 #include "sidestep/sdf/tracking/background.h"
 #include "sidestep/sdf/tracking/segmentation.h"
@@ -99,10 +100,9 @@ class ObjectTracker {
   ObjectTracker(const GridSpec& grid, const ObjectTrackerOptions& options);
 
   /// Takes in what is filled at time t.
-  /// @param may_differ all cells that may not be as they were the last time; none: any may.
   /// @throws std::invalid_argument for another grid, or unless t is later than the last.
   TrackerTimes Update(const OccupancyGrid& occupancy, EpisodeTime t, const Sight& sight = {},
-                      const std::optional<std::span<const std::size_t>>& may_differ = {});
+                      const MayDiffer& may_differ = {});
 
   /// The things that move, by id, also those that the latest scan did not show.
   std::vector<std::shared_ptr<const TrackedObject>> MovingObjects() const;
@@ -113,7 +113,7 @@ class ObjectTracker {
   /// What was filled in the latest scan and does not belong to a moving thing.
   const OccupancyGrid& static_occupancy() const { return static_occupancy_; }
   /// All cells of it that may not be as they were before the latest scan; none: any may.
-  std::optional<std::span<const std::size_t>> static_may_differ() const {
+  MayDiffer static_may_differ() const {
     if (!knows_differences_) return std::nullopt;
     return static_may_differ_;
   }
@@ -173,8 +173,7 @@ class ObjectTracker {
   // Tells of things not found in this scan: whether they are one component with another thing now.
   void NoteMerges(const std::vector<View>& views, EpisodeTime t);
   void NoteTooFast(const View& view, EpisodeTime t);
-  void CopyStatic(const OccupancyGrid& occupancy,
-                  const std::optional<std::span<const std::size_t>>& may_differ);
+  void CopyStatic(const OccupancyGrid& occupancy, const MayDiffer& may_differ);
   void LeaveOut(const Component& component);
   void ReopenVanished(const OccupancyGrid& occupancy, EpisodeTime t);
   std::vector<View> Look(std::vector<Component> components) const;
