@@ -488,6 +488,7 @@ sdf::EvidenceOptions EvidenceOf(const scenarios::EvidenceSettings& settings) {
   options.settle_scans = settings.settle_scans;
   options.decay_per_s = settings.decay_per_s;
   options.noise_sigmas = settings.noise_sigmas;
+  options.average_scans = settings.average_scans;
   options.least_cells = settings.least_cells;
   return options;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace sidestep::bench {
@@ -62,6 +63,11 @@ void RobotFilter::Remove(const Eigen::VectorXd& q, Scan* scan) const {
       return Distance(ball, p_WP) <= reach_m;
     });
     (is_own ? own : others).push_back(n);
+  }
+  if (!scan->rays.empty()) {
+    std::vector<int> rays;
+    for (const Eigen::Index n : others) rays.push_back(scan->rays[static_cast<std::size_t>(n)]);
+    scan->rays = std::move(rays);
   }
   const Eigen::Matrix3Xd free_ends = scan->p_CFree;
   const Eigen::Matrix3Xd own_points = Keep(scan->p_CP, own);

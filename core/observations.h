@@ -31,8 +31,11 @@ struct Scan {
   EpisodeTime t;       ///< when it was captured, not when it arrived
   std::string sensor;  ///< its name
   ScanKind kind = ScanKind::kSolid;
-  Pose X_WC;                               ///< where the sensor stood
-  Eigen::Matrix3Xd p_CP;                   ///< [m] the points, in the sensor's frame
+  Pose X_WC;              ///< where the sensor stood
+  Eigen::Matrix3Xd p_CP;  ///< [m] the points, in the sensor's frame
+  /// kSurface only: which ray of the sensor each of these points ends, from 0; a ray points the
+  /// same way in all of its scans. Empty: that is not known.
+  std::vector<int> rays;
   Eigen::Matrix3Xd p_CFree;                ///< [m] kSurface only: ends of rays that met nothing
   std::vector<ObjectObservation> objects;  ///< whose solids the points leave out
 };

@@ -266,6 +266,7 @@ EvidenceSettings ReadEvidence(const YamlReader& top, const std::vector<SensorSet
   evidence.settle_scans = CountFrom1(map, "settle_scans", evidence.settle_scans, 10000);
   evidence.decay_per_s = AtMost(map, "decay_per_s", evidence.decay_per_s, kMaxDecay);
   evidence.noise_sigmas = AtMost(map, "noise_sigmas", evidence.noise_sigmas, kMaxSigmas);
+  evidence.average_scans = CountFrom1(map, "average_scans", evidence.average_scans, 10000);
   evidence.least_cells = CountFrom1(map, "least_cells", evidence.least_cells, 10000);
   map.CheckNoUnknownKeys();
   return evidence;
@@ -296,6 +297,7 @@ std::string ToYaml(const EvidenceSettings& evidence) {
          ", settle_scans: " + std::to_string(evidence.settle_scans) +
          ", decay_per_s: " + Number(evidence.decay_per_s) +
          ", noise_sigmas: " + Number(evidence.noise_sigmas) +
+         ", average_scans: " + std::to_string(evidence.average_scans) +
          ", least_cells: " + std::to_string(evidence.least_cells) + "}\n";
 }
 

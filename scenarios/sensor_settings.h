@@ -51,6 +51,7 @@ struct EvidenceSettings {
   int settle_scans = 60;
   double decay_per_s = 30;
   double noise_sigmas = 4;
+  int average_scans = 60;
   int least_cells = 6;
 };
 

@@ -62,16 +62,18 @@ std::optional<Scan> DepthCamera::Read(EpisodeTime) {
     if (is_measured[n]) depth_m += settings_.noise_per_m * depth_m * depth_m * noise;
   }
   const std::vector<bool> flies = FindFlyingPixels(image, settings_.edge_m);
+  Scan scan;
   std::vector<Eigen::Vector3d> hits, free_ends;
   for (std::size_t n = 0; n < rays_C_.size(); ++n) {
     if (is_lost[n]) continue;
     if (is_measured[n]) {
-      if (!flies[n]) hits.push_back(rays_C_[n] * image.depths_m[n]);
+      if (flies[n]) continue;
+      hits.push_back(rays_C_[n] * image.depths_m[n]);
+      scan.rays.push_back(static_cast<int>(n));
     } else {
       free_ends.push_back(rays_C_[n] * std::min(depths_m[n], settings_.range_m));
     }
   }
-  Scan scan;
   scan.t = world_.time();
   scan.kind = ScanKind::kSurface;
   scan.X_WC = X_WC_;

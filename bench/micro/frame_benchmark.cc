@@ -75,6 +75,7 @@ std::vector<Scan> RoundOfImages(int n, double noise_per_m) {
       const auto [i, j, k] = grid.CellOf(solid.p_CP.col(c));
       filled.cells[grid.Index(i, j, k)] = 1;
     }
+    Scan& scan = scans.emplace_back();
     std::vector<Eigen::Vector3d> hits, free_ends;
     for (int v = 0; v < 120; ++v) {
       for (int u = 0; u < 160; ++u) {
@@ -87,11 +88,14 @@ std::vector<Scan> RoundOfImages(int n, double noise_per_m) {
                                 return !part;
                               });
         const double z_m = part.value_or(1) * reach_m;
-        if (part) hits.push_back(ray_C * z_m * (1 + noise_per_m * z_m * random.Normal()));
-        if (!part) free_ends.push_back(ray_C * z_m);
+        if (!part) {
+          free_ends.push_back(ray_C * z_m);
+          continue;
+        }
+        hits.push_back(ray_C * z_m * (1 + noise_per_m * z_m * random.Normal()));
+        scan.rays.push_back(160 * v + u);
       }
     }
-    Scan& scan = scans.emplace_back();
     scan.kind = ScanKind::kSurface;
     scan.sensor = "camera";
     scan.X_WC = X_WC;
@@ -150,7 +154,7 @@ void DepthImage(benchmark::State& state) {
   options.grid = RoomGrid(n);
   options.max_distance_m = 0.4;
   if (state.range(1) != 0) {
-    options.evidence = {0.7, 1.4, -2.8, 2.8, 10, 30, 4, 6};
+    options.evidence = {0.7, 1.4, -2.8, 2.8, 60, 30, 4, 60, 6};
     options.views["camera"].noise_per_m = noise_per_m;
   }
   Watch(state, RoundOfImages(n, noise_per_m), options);

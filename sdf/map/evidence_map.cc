@@ -20,7 +20,7 @@ constexpr Word kWords[] = {{UnseenSpace::kFree, "free"},
                            {UnseenSpace::kRemembered, "remembered"}};
 
 // What the rays of a scan say of a cell, together.
-constexpr std::uint8_t kPassed = 1, kHit = 2;
+constexpr std::uint8_t kPassed = 1, kHit = 2, kDoubted = 4;
 
 constexpr int kMostSettleScans = 10000;
 
@@ -58,7 +58,8 @@ EvidenceMap::EvidenceMap(const GridSpec& grid_W, const EvidenceOptions& options,
   CheckGridSpec(grid_W);
   if (!(options.hit > 0) || !(options.miss > 0) || !(options.least < 0) || !(options.most > 0) ||
       !(options.decay_per_s >= 0) || !(options.noise_sigmas >= 0) || options.least_cells < 1 ||
-      options.settle_scans < 1 || options.settle_scans > kMostSettleScans) {
+      options.settle_scans < 1 || options.settle_scans > kMostSettleScans ||
+      options.average_scans < 1) {
     throw std::invalid_argument("EvidenceMap: options out of their bounds");
   }
   filled_ = new_hits_ = OccupancyGrid(grid_W);
@@ -79,13 +80,17 @@ EvidenceMap::Camera& EvidenceMap::Find(const std::string& name) {
   if (is_new) {
     if (cameras_.size() > kMostCameras) throw std::invalid_argument("EvidenceMap: 8 cameras");
     at->second.number = static_cast<std::uint8_t>(cameras_.size());
+    at->second.depths = SteadyDepths(options_.average_scans);
   }
   return at->second;
 }
 
 void EvidenceMap::Update(const Scan& scan) {
+  if (!scan.rays.empty() && scan.rays.size() != static_cast<std::size_t>(scan.p_CP.cols())) {
+    throw std::invalid_argument("EvidenceMap: a scan has a ray for each of its points, or none");
+  }
   Camera& camera = Find(scan.sensor);
-  Trace(scan, camera.view);
+  Trace(scan, camera);
   BelieveAtOnce();
   const double dt_s = camera.t_scan ? std::max(0.0, (scan.t - *camera.t_scan).seconds()) : 0;
   camera.t_scan = scan.t;
@@ -97,6 +102,8 @@ void EvidenceMap::Update(const Scan& scan) {
     in_view = static_cast<std::uint8_t>(mark != 0 ? in_view | bit : in_view & ~bit);
     if ((mark & kHit) != 0) {
       Hit(cells_[index], index, camera);
+    } else if ((mark & kDoubted) != 0) {
+      cells_[index].hit_by &= static_cast<std::uint8_t>(~bit);
     } else if (mark != 0) {
       Pass(cells_[index], index, camera);
     } else if (cells_[index].seen_by != 0) {
@@ -106,7 +113,7 @@ void EvidenceMap::Update(const Scan& scan) {
   std::fill(marks_.begin(), marks_.end(), std::uint8_t{0});
 }
 
-void EvidenceMap::Trace(const Scan& scan, const CameraView& view) {
+void EvidenceMap::Trace(const Scan& scan, Camera& camera) {
   const GridSpec& grid = filled_.spec;
   const Eigen::Vector3d p_WCamera = scan.X_WC.translation();
   const Eigen::Matrix3d R_WC = scan.X_WC.rotation().toRotationMatrix();
@@ -121,12 +128,21 @@ void EvidenceMap::Trace(const Scan& scan, const CameraView& view) {
     });
   }
   for (Eigen::Index n = 0; n < scan.p_CP.cols(); ++n) {
-    const Eigen::Vector3d p_CP = scan.p_CP.col(n);
-    const Eigen::Vector3d p_WPoint = p_WCamera + R_WC * p_CP;
-    if (!p_WPoint.allFinite()) continue;
+    Eigen::Vector3d p_CP = scan.p_CP.col(n);
+    if (!p_CP.allFinite()) continue;
+    int count = 1;
+    if (!scan.rays.empty() && p_CP.z() > 0) {
+      const double depth_m = p_CP.z();
+      const SteadyDepths::Mean mean =
+          camera.depths.Take(scan.rays[static_cast<std::size_t>(n)], depth_m,
+                             camera.view.noise_per_m * depth_m * depth_m);
+      if (mean.count > 1) p_CP *= mean.depth_m / depth_m;
+      count = mean.count;
+    }
     // Noise moves a point along its ray by so much for each metre of depth.
-    const double deviation_m = view.noise_per_m * std::abs(p_CP.z()) * p_CP.norm();
-    TracePoint(p_WCamera, p_WPoint, options_.noise_sigmas * deviation_m);
+    const double deviation_m =
+        camera.view.noise_per_m * std::abs(p_CP.z()) * p_CP.norm() / std::sqrt(count);
+    TracePoint(p_WCamera, p_WCamera + R_WC * p_CP, options_.noise_sigmas * deviation_m);
   }
 }
 
@@ -158,9 +174,9 @@ void EvidenceMap::TracePoint(const Eigen::Vector3d& p_WCamera, const Eigen::Vect
                        if (cell != end) marks_[cell] |= kPassed;
                        return true;
                      }
+                     if (enter < at_end) marks_[cell] |= kDoubted;
                      const double off = std::max({0.0, enter - at_end, at_end - leave});
-                     if (off > nearest) return false;  // it only gets farther
-                     if (Attracts(cell)) {
+                     if (off < nearest && Attracts(cell)) {
                        attractor = cell;
                        nearest = off;
                      }

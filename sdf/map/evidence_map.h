@@ -9,6 +9,7 @@
 
 #include "sidestep/core/grid.h"
 #include "sidestep/core/observations.h"
+#include "sidestep/sdf/map/steady_depths.h"
 
 namespace sidestep::sdf {
 
@@ -44,6 +45,9 @@ struct EvidenceOptions {
   /// before anything moved there says nothing new: it is a hit of that cell. And no ray says that
   /// cells are free so near to its end.
   double noise_sigmas = 0;
+  /// What a ray measures is averaged over so many scans for as long as it stays the same, where the
+  /// scans say which ray is which; 1: it is not. Noise counts the less for it.
+  int average_scans = 1;
   /// So many cells that hang together and are hit by one scan are believed at once, whatever was
   /// known to be free there; fewer have to be hit again and again.
   int least_cells = 1;
@@ -64,6 +68,7 @@ class EvidenceMap {
               const std::map<std::string, CameraView>& views);
 
   /// Takes in a scan of surfaces. Of each sensor they come in the order of capture.
+  /// @throws std::invalid_argument if rays are named for some of its points only.
   void Update(const Scan& scan);
 
   /// In the order of GridSpec::Index.
@@ -87,11 +92,12 @@ class EvidenceMap {
     CameraView view;
     std::uint8_t number = 0;            // from 1
     std::optional<EpisodeTime> t_scan;  // of its latest scan
+    SteadyDepths depths{1};
     std::uint8_t bit() const { return static_cast<std::uint8_t>(1U << (number - 1U)); }
   };
 
   Camera& Find(const std::string& name);
-  void Trace(const Scan& scan, const CameraView& view);
+  void Trace(const Scan& scan, Camera& camera);
   bool IsSettled(const Cell& cell) const { return cell.hits >= options_.settle_scans; }
   void TracePoint(const Eigen::Vector3d& p_WCamera, const Eigen::Vector3d& p_WPoint,
                   double doubt_m);

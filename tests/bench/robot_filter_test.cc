@@ -67,6 +67,7 @@ TEST(RobotFilter, TakesOutWhatIsWithinItsMarginOfTheModelAndNothingElse) {
     for (Eigen::Index n = 0; n < scan.p_CP.cols(); ++n) {
       scan.p_CP.col(n) = Eigen::Vector3d(0.3, 0, 0.8) + UniformPoint(random, 0.7) - p_WC;
     }
+    for (int n = 0; n < 4000; ++n) scan.rays.push_back(3 * n);
     scan.p_CFree = Eigen::Vector3d(1, 2, 3);
     const Eigen::Matrix3Xd points = scan.p_CP;
     filter.Remove(q, &scan);
@@ -79,7 +80,7 @@ TEST(RobotFilter, TakesOutWhatIsWithinItsMarginOfTheModelAndNothingElse) {
       const double over_m = DistanceFrom(robot, q, p_WC + p) - reach_m;
       const bool was_kept = kept < scan.p_CP.cols() && scan.p_CP.col(kept) == p;
       if (was_kept) {
-        ++kept;
+        EXPECT_EQ(scan.rays.at(static_cast<std::size_t>(kept++)), 3 * n);
         EXPECT_GT(over_m, -1e-5);
       } else {
         ASSERT_EQ(scan.p_CFree.col(taken++), p) << "its ray is free so far";
@@ -88,6 +89,7 @@ TEST(RobotFilter, TakesOutWhatIsWithinItsMarginOfTheModelAndNothingElse) {
     }
     EXPECT_GT(taken, 100);
     EXPECT_GT(kept, 100);
+    EXPECT_EQ(scan.rays.size(), static_cast<std::size_t>(kept));
   }
 }
 

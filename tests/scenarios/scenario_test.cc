@@ -113,7 +113,7 @@ sensors:
   - {name: occupancy, rate_hz: 20}
   - {name: tags, label: left, rate_hz: 25, tags: {position_m: [0, 2, 1]}}
 evidence: {single_frames: true, hit: 0.5, miss: 0.6, least: -3, most: 4, settle_scans: 5, decay_per_s: 2,
-           noise_sigmas: 3, least_cells: 9}
+           noise_sigmas: 3, average_scans: 7, least_cells: 9}
 seed: 42
 )";
   const Scenario scenario = ParseScenario(text, "odd.yaml");
@@ -158,6 +158,7 @@ seed: 42
   EXPECT_EQ(again.evidence.settle_scans, 5);
   EXPECT_EQ(again.evidence.decay_per_s, 2);
   EXPECT_EQ(again.evidence.noise_sigmas, 3);
+  EXPECT_EQ(again.evidence.average_scans, 7);
   EXPECT_EQ(again.evidence.least_cells, 9);
   EXPECT_EQ(again.sensor.tags->rotation_noise_rad, 0.007);
   ASSERT_EQ(again.static_obstacles.size(), 3u);

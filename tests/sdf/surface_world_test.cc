@@ -20,7 +20,7 @@ WorldModelOptions Options(double noise_per_m) {
   options.predictor = "kalman_cv";
   options.grid = {{0, -1.5, -1.5}, 0.05, {60, 60, 60}};
   options.max_distance_m = 0.3;
-  options.evidence = {0.7, 1.4, -2.8, 2.8, 10, 30, 4, 6};
+  options.evidence = {0.7, 1.4, -2.8, 2.8, 10, 30, 4, 1, 6};
   options.views["camera"].noise_per_m = noise_per_m;
   return options;
 }
