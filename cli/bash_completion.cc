@@ -73,7 +73,7 @@ std::string Calls(const std::string& call, const CLI::App& app) {
 }  // namespace
 
 std::string BashCompletion(const CLI::App& program) {
-  const std::string name = program.get_name();
+  const std::string& name = program.get_name();
   return "# Completes the words of `" + name + "` in bash; made from its --help.\n_" + name +
          "() {\n"
          "  local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}\n"

@@ -183,6 +183,19 @@ TEST(EvidenceMap, ThinsAWallToItsOwnCellsWhereRaysAreAveraged) {
   EXPECT_EQ(thickness(60), 0);
 }
 
+// A ray goes past the end of another, through the cell before it.
+TEST(EvidenceMap, DoesNotSayThatSpaceIsFreeWhereANoisyRayMayHaveEnded) {
+  for (const double noise_per_m : {0.0, 0.01}) {
+    EvidenceMap map(kGrid, Weighed(), {{"camera", {UnseenSpace::kRemembered, noise_per_m}}});
+    for (int n = 0; n < 20; ++n) {
+      map.Update(Seen({{2.05, 0.05, 0.05}}, {{2.9, 0.09, 0.05}}, n / 30.0));
+    }
+    EXPECT_NE(map.filled().cells[CellAt({2.05, 0.05, 0.05})], 0);
+    EXPECT_EQ(map.once_free()[CellAt({1.95, 0.05, 0.05})] != 0, noise_per_m == 0) << noise_per_m;
+    EXPECT_NE(map.once_free()[CellAt({1.65, 0.05, 0.05})], 0) << "0.16 m are 4 deviations";
+  }
+}
+
 TEST(EvidenceMap, SeesWhatStandsClearOfTheNoiseBeforeAWall) {
   EvidenceMap map(kGrid, Weighed(), {{"camera", {UnseenSpace::kRemembered, 0.002}}});
   for (int n = 0; n < 20; ++n) map.Update(Seen(Square(2.05, 4), {}, n / 30.0));
