@@ -111,7 +111,7 @@ std::string Page(const std::string& call, const CLI::App& command, const CLI::Ap
 
 std::map<std::string, std::string> ManPages(const CLI::App& program, const std::string& version) {
   std::map<std::string, std::string> pages;
-  const std::string name = program.get_name();
+  const std::string& name = program.get_name();
   pages[PageName(name) + ".1"] = Page(name, program, program, version);
   for (const CLI::App* const command : Commands(program)) {
     const std::string call = name + " " + command->get_name();
