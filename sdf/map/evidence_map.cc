@@ -130,24 +130,23 @@ void EvidenceMap::Trace(const Scan& scan, Camera& camera) {
   for (Eigen::Index n = 0; n < scan.p_CP.cols(); ++n) {
     Eigen::Vector3d p_CP = scan.p_CP.col(n);
     if (!p_CP.allFinite()) continue;
-    int count = 1;
+    SteadyDepths::Mean mean = {p_CP.z(), 1, false};
     if (!scan.rays.empty() && p_CP.z() > 0) {
       const double depth_m = p_CP.z();
-      const SteadyDepths::Mean mean =
-          camera.depths.Take(scan.rays[static_cast<std::size_t>(n)], depth_m,
-                             camera.view.noise_per_m * depth_m * depth_m);
+      mean = camera.depths.Take(scan.rays[static_cast<std::size_t>(n)], depth_m,
+                                camera.view.noise_per_m * depth_m * depth_m);
       if (mean.count > 1) p_CP *= mean.depth_m / depth_m;
-      count = mean.count;
     }
     // Noise moves a point along its ray by so much for each metre of depth.
     const double deviation_m =
-        camera.view.noise_per_m * std::abs(p_CP.z()) * p_CP.norm() / std::sqrt(count);
-    TracePoint(p_WCamera, p_WCamera + R_WC * p_CP, options_.noise_sigmas * deviation_m);
+        camera.view.noise_per_m * std::abs(p_CP.z()) * p_CP.norm() / std::sqrt(mean.count);
+    TracePoint(p_WCamera, p_WCamera + R_WC * p_CP, options_.noise_sigmas * deviation_m,
+               !mean.has_jumped);
   }
 }
 
 void EvidenceMap::TracePoint(const Eigen::Vector3d& p_WCamera, const Eigen::Vector3d& p_WPoint,
-                             double doubt_m) {
+                             double doubt_m, bool spares) {
   const GridSpec& grid = filled_.spec;
   const Eigen::Vector3d way = p_WPoint - p_WCamera;
   const double far_m = way.norm();
@@ -174,7 +173,7 @@ void EvidenceMap::TracePoint(const Eigen::Vector3d& p_WCamera, const Eigen::Vect
                        if (cell != end) marks_[cell] |= kPassed;
                        return true;
                      }
-                     if (enter < at_end) marks_[cell] |= kDoubted;
+                     if (spares && enter < at_end) marks_[cell] |= kDoubted;
                      const double off = std::max({0.0, enter - at_end, at_end - leave});
                      if (off < nearest && Attracts(cell)) {
                        attractor = cell;

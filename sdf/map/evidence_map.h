@@ -99,8 +99,10 @@ class EvidenceMap {
   Camera& Find(const std::string& name);
   void Trace(const Scan& scan, Camera& camera);
   bool IsSettled(const Cell& cell) const { return cell.hits >= options_.settle_scans; }
-  void TracePoint(const Eigen::Vector3d& p_WCamera, const Eigen::Vector3d& p_WPoint,
-                  double doubt_m);
+  // @param spares whether other rays do not free cells where this one may have ended either. What
+  // has come is no reason to: where it was before would stay filled the longer.
+  void TracePoint(const Eigen::Vector3d& p_WCamera, const Eigen::Vector3d& p_WPoint, double doubt_m,
+                  bool spares);
   // Whether what is filled in a cell explains points that noise has put nearby.
   bool Attracts(std::size_t cell) const;
   void BelieveAtOnce();

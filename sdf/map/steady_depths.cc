@@ -34,7 +34,8 @@ SteadyDepths::Mean SteadyDepths::Take(int ray, double depth_m, double deviation_
   const bool is_steady = known.mean.count > 0 && deviation_m > 0 && std::abs(off) <= kMostOff &&
                          std::abs(known.drift) <= kMostDrift * kDriftDeviation;
   if (!is_steady) {
-    known = {{depth_m, 1}, 0};
+    const bool jumps = known.mean.count > 0 && !(std::abs(off) <= kMostOff);
+    known = {{depth_m, 1, known.mean.has_jumped || jumps}, 0};
     return known.mean;
   }
   known.mean.count = std::min(known.mean.count + 1, most_images_);

@@ -17,7 +17,8 @@ class SteadyDepths {
  public:
   struct Mean {
     double depth_m = 0;
-    int count = 0;  ///< of how many images; not above the most
+    int count = 0;            ///< of how many images; not above the most
+    bool has_jumped = false;  ///< since the ray's first image, from one depth to quite another
   };
 
   /// @param most_images the newest weighs at least 1 / most_images; 1: nothing is averaged.
