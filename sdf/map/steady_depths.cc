@@ -25,21 +25,27 @@ SteadyDepths::Mean SteadyDepths::Take(int ray, double depth_m, double deviation_
   const auto at = static_cast<std::size_t>(ray);
   if (at >= rays_.size()) rays_.resize(at + 1);
   Ray& known = rays_[at];
-  const double off_m = depth_m - known.mean.depth_m;
-  // The mean errs as well.
-  const double off =
-      deviation_m > 0 ? off_m / (deviation_m * std::sqrt(1 + 1.0 / std::max(1, known.mean.count)))
-                      : 0;
-  known.drift += kNewest * (off - known.drift);
-  const bool is_steady = known.mean.count > 0 && deviation_m > 0 && std::abs(off) <= kMostOff &&
-                         std::abs(known.drift) <= kMostDrift * kDriftDeviation;
-  if (!is_steady) {
-    const bool jumps = known.mean.count > 0 && !(std::abs(off) <= kMostOff);
-    known = {{depth_m, 1, known.mean.has_jumped || jumps}, 0};
+  if (!(deviation_m > 0) || known.mean.count == 0) {
+    known.mean = {depth_m, 1, known.mean.has_jumped};
     return known.mean;
   }
+  // The mean errs as well.
+  const auto off = [&](const Mean& mean) {
+    return (depth_m - mean.depth_m) / (deviation_m * std::sqrt(1 + 1.0 / mean.count));
+  };
+  known.drift += kNewest * (off(known.mean) - known.drift);
+  if (std::abs(off(known.mean)) > kMostOff) {
+    if (known.mean.count >= known.before.count)
+      known.before = {known.mean.depth_m, known.mean.count, false};
+    const bool is_back = std::abs(off(known.before)) <= kMostOff;
+    known.mean = is_back ? known.before : Mean{depth_m, 0, true};
+    known.drift = 0;
+  } else if (std::abs(known.drift) > kMostDrift * kDriftDeviation) {
+    known.mean = {depth_m, 0, known.mean.has_jumped};
+    known.drift = 0;
+  }
   known.mean.count = std::min(known.mean.count + 1, most_images_);
-  known.mean.depth_m += off_m / known.mean.count;
+  known.mean.depth_m += (depth_m - known.mean.depth_m) / known.mean.count;
   return known.mean;
 }
 

@@ -12,13 +12,14 @@ namespace sidestep::sdf {
 /// in a row are off to the same side: an average of the newest that weighs them by 0.3, 0.21, ...
 /// must be within 3 of its own standard deviations. So the mean of what creeps along a ray is
 /// never more than some 1.5 standard deviations of a single depth behind.
+/// What it saw for longest is kept: a wall before which something has passed is known again.
 /// Source: the exponentially weighted control chart of S. W. Roberts (Technometrics 1, 1959).
 class SteadyDepths {
  public:
   struct Mean {
     double depth_m = 0;
     int count = 0;            ///< of how many images; not above the most
-    bool has_jumped = false;  ///< since the ray's first image, from one depth to quite another
+    bool has_jumped = false;  ///< away from what the ray has seen for longest
   };
 
   /// @param most_images the newest weighs at least 1 / most_images; 1: nothing is averaged.
@@ -33,6 +34,7 @@ class SteadyDepths {
  private:
   struct Ray {
     Mean mean;
+    Mean before;       // what it saw for longest, before the last jump
     double drift = 0;  // of the newest depths from the mean, in standard deviations
   };
 

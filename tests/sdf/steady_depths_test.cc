@@ -50,6 +50,24 @@ TEST(SteadyDepths, TakeAJumpAsItIsMeasured) {
   EXPECT_EQ(there.count, 1);
 }
 
+TEST(SteadyDepths, KnowAWallAgainBeforeWhichSomethingHasPassed) {
+  SteadyDepths depths(60);
+  for (int n = 0; n < 30; ++n) EXPECT_FALSE(depths.Take(0, 2, kDeviation_m).has_jumped);
+  for (int n = 0; n < 10; ++n) EXPECT_TRUE(depths.Take(0, 1.5, kDeviation_m).has_jumped);
+  SteadyDepths::Mean again = depths.Take(0, 2.03, kDeviation_m);
+  EXPECT_EQ(again.count, 31);
+  EXPECT_NEAR(again.depth_m, 2 + 0.03 / 31, 1e-12);
+  EXPECT_FALSE(again.has_jumped);
+  EXPECT_TRUE(depths.Take(0, 1.5, kDeviation_m).has_jumped);
+  // What stays for longer is the wall.
+  for (int n = 0; n < 60; ++n) depths.Take(0, 1.5, kDeviation_m);
+  EXPECT_TRUE(depths.Take(0, 2, kDeviation_m).has_jumped);
+  again = depths.Take(0, 1.5, kDeviation_m);
+  EXPECT_EQ(again.count, 60);
+  EXPECT_EQ(again.depth_m, 1.5);
+  EXPECT_FALSE(again.has_jumped);
+}
+
 TEST(SteadyDepths, AreNeverFarBehindWhatCreeps) {
   for (const double step_m : {0.0005, 0.002, 0.005, 0.01, 0.03, 0.2}) {
     for (const double way : {-1, 1}) {
