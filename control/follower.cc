@@ -104,7 +104,8 @@ Command Follower::Tick(const Measured& measured, HorizonOffset period) noexcept 
 
   Reaction reaction = Reaction::kNone;
   if (supervisor_ && plan != nullptr) {
-    supervisor_->LookAhead(plan->trajectory, progress_.t - plan->start, kForeseen_per_s);
+    supervisor_->LookAhead(plan->trajectory, progress_.t - plan->start, progress_.pace,
+                           kForeseen_per_s);
   }
   if (supervisor_) reaction = supervisor_->Judge(measured, command.motion, period_s);
   const bool is_stopped = reaction > Reaction::kEase;

@@ -44,6 +44,8 @@ const char* ToString(SafetyCheck check) {
       return "obstacle_too_fast";
     case SafetyCheck::kToolSpeed:
       return "tool_speed";
+    case SafetyCheck::kLongStop:
+      return "long_stop";
   }
   return "";
 }

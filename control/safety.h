@@ -37,8 +37,9 @@ enum class SafetyCheck {
   kClockJump = 19,        ///< a sensor's clock and ours have moved against each other
   kObstacleTooFast = 20,  ///< an obstacle is faster than was declared
   kToolSpeed = 21,        ///< the tool is to be faster than it may be
+  kLongStop = 22,         ///< the way to rest takes too long, or is too long
 };
-inline constexpr int kNumSafetyChecks = 22;
+inline constexpr int kNumSafetyChecks = 23;
 /// "perception_stale", "clearance", ...
 const char* ToString(SafetyCheck check);
 
@@ -73,32 +74,36 @@ struct SafetySettings {
   double obstacle_speed_m_s = 0.5;
   double obstacle_acceleration_m_s2 = 2;
 
-  double slow_after_s = 0.15;     ///< 1: with a report older than that it moves at stale_pace
-  double stale_pace = 0.3;        ///< 1: share of the speed that was planned
-  double stale_s = 0.3;           ///< 1, 2: the oldest a report, or an obstacle in it, may be
-  double future_s = 0.01;         ///< 3
-  double splice_q_rad = 0.005;    ///< 6
-  double splice_v_rad_s = 0.05;   ///< 6
-  double splice_a_rad_s2 = 1;     ///< 6
-  double range_margin_rad = 0.1;  ///< 7: kept from position limits
-  double v_share = 0.5;           ///< 7: of the robot's limits, for commands
-  double a_share = 0.5;           ///< 7
-  double jerk_share = 0.03;       ///< 7
-  double floor_m = 0;             ///< 8
-  double floor_margin_m = 0.02;   ///< 8
-  double clearance_m = 0.05;      ///< 9
-  double margin_m = 0.03;         ///< 10: for what is not known exactly
-  double slow_m = 0.1;            ///< 10: so far before that margin is used up it begins to slow
-  double approach_m = 0.02;       ///< 10: slows in full only if resting would leave so much more
-  double near_pace = 0.1;         ///< 10: share of the speed that was planned, at the margin
-  double tracking_rad = 0.02;     ///< 11
-  JointVector torque_n_m;         ///< 12: at which the robot would stop by itself; empty: not known
-  double torque_share = 0.5;      ///< 12: of that
-  double torque_s = 0.02;         ///< 12: for so long
-  double success_rate = 0.9;      ///< 13: of the latest 100 packets
-  int lost_in_a_row = 5;          ///< 13
-  double too_fast_s = 0.1;        ///< 20: for so long
+  double slow_after_s = 0.15;    ///< 1: with a report older than that it moves at stale_pace
+  double stale_pace = 0.3;       ///< 1: share of the speed that was planned
+  double stale_s = 0.3;          ///< 1, 2: the oldest a report, or an obstacle in it, may be
+  double future_s = 0.01;        ///< 3
+  double splice_q_rad = 0.005;   ///< 6
+  double splice_v_rad_s = 0.05;  ///< 6
+  double splice_a_rad_s2 = 1;    ///< 6
+  /// 7: kept from position limits; what a robot makes up for lost packets may take some of it.
+  double range_margin_rad = 0.101;
+  double v_share = 0.5;          ///< 7: of the robot's limits, for commands
+  double a_share = 0.5;          ///< 7
+  double jerk_share = 0.022;     ///< 7
+  double floor_m = 0;            ///< 8
+  double floor_margin_m = 0.02;  ///< 8
+  double clearance_m = 0.05;     ///< 9
+  double margin_m = 0.03;        ///< 10: for what is not known exactly
+  double slow_m = 0.1;           ///< 10: so far before that margin is used up it begins to slow
+  double approach_m = 0.02;      ///< 10: slows in full only if resting would leave so much more
+  double near_pace = 0.1;        ///< 10: share of the speed that was planned, at the margin
+  double tracking_rad = 0.02;    ///< 11
+  JointVector torque_n_m;        ///< 12: at which the robot would stop by itself; empty: not known
+  double torque_share = 0.5;     ///< 12: of that
+  double torque_s = 0.02;        ///< 12: for so long
+  double success_rate = 0.9;     ///< 13: of the latest 100 packets
+  int lost_in_a_row = 5;         ///< 13
+  double too_fast_s = 0.1;       ///< 20: for so long
+  double too_fast_sigmas = 3;    ///< 20: of its speed, that may be an error
   double tool_speed_m_s = std::numeric_limits<double>::infinity();  ///< 21
+  double stop_s = 0.35;                                             ///< 22: the longest stop ...
+  double stop_m = 0.1;  ///< 22: ... and how far it moves any part of the arm
   double resume_s = 1;
 };
 

@@ -52,9 +52,10 @@ class Supervisor {
   bool Refuses(const JointPoint& before, bool begins, const JointPoint* other,
                const Measured& measured) noexcept;
 
-  /// The plan that is followed is at `offset` now: as of the next Judge, the tool is to keep its
-  /// speed on it. @param slowing_per_s how quickly the pace can fall.
-  void LookAhead(const Trajectory& plan, HorizonOffset offset, double slowing_per_s) noexcept;
+  /// The plan that is followed is at `offset` now, at this pace: as of the next Judge, the tool is
+  /// to keep its speed on it. @param slowing_per_s how quickly the pace can fall.
+  void LookAhead(const Trajectory& plan, HorizonOffset offset, double pace,
+                 double slowing_per_s) noexcept;
 
   /// What is to be done instead of sending `next`: kNone, kEase, kHold or kBrake.
   Reaction Judge(const Measured& measured, const JointPoint& next, double period_s) noexcept;
@@ -71,12 +72,18 @@ class Supervisor {
  private:
   static constexpr int kStops = 8;  // the way to rest is looked at in so many pieces
 
-  // Where an obstacle can have come: anywhere within the radius of where it would be by itself.
+  // Where an obstacle can have come: anywhere within the radius of where it would be by itself that
+  // is no further from where it was seen than it can go.
   struct Reach {
     Eigen::Vector3d shift_W;
     double radius_m;
+    double way_m;
   };
   Reach ReachAfter(const ObstacleState& obstacle, double after_s) const;
+  static double LeastMargin(const ArmCapsules::Placed& capsule, const ObstacleState& obstacle,
+                            const Reach& reach);
+  static double Margin(const ArmCapsules::Placed& capsule, const ObstacleState& obstacle,
+                       const Reach& reach);
 
   // kNone: it is not found.
   void Find(SafetyCheck check, Reaction reaction, double value, double limit);
@@ -89,6 +96,7 @@ class Supervisor {
   void JudgePlaces(const ObstacleReport* report, const JointPoint& next, double period_s,
                    Reaction if_low);
   void JudgeTool(const Measured& measured, const JointPoint& next, double period_s);
+  void JudgeStop(double period_s);
   double MarginAtRest(const ObstacleReport& report) const;
   double PaceFor(double left_m, double at_rest_m) const;
   double FastestOnStop_m_s(const JointPoint& next, double period_s);
@@ -125,6 +133,7 @@ class Supervisor {
   std::optional<EpisodeTime> eased_;  // the latest time
   ToolGate tool_gate_;
   ToolGate::Ahead tool_ahead_;
+  double followed_pace_ = 1;  // of the plan that is followed, if any
 };
 
 }  // namespace sidestep::control

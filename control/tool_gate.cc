@@ -6,7 +6,7 @@
 namespace sidestep::control {
 namespace {
 
-constexpr double kAimedAt = 0.95;   // of the speed
+constexpr double kAimedAt = 0.94;   // of the speed
 constexpr double kStep_s = 0.05;    // between looks
 constexpr double kGlance_s = 2e-3;  // of which each measures a speed
 

@@ -27,7 +27,7 @@ class ToolGate {
     double fastest_m_s = 0;  ///< as planned, as far as it looks ahead
   };
   /// Looks so far ahead that a pace which falls by `slowing_per_s` is low enough when the plan gets
-  /// fast. A twentieth of the speed is kept in reserve for how commands follow plans.
+  /// fast. 6 % of the speed are kept in reserve for how commands follow plans.
   Ahead LookAhead(const Trajectory& plan, HorizonOffset offset, double slowing_per_s) noexcept;
 
  private:

@@ -16,6 +16,8 @@ struct ObstacleState {
   Eigen::Vector3d half_extents_m = Eigen::Vector3d::Zero();  ///< of the box
   double radius_m = 0;                                       ///< by which the box is grown
   Eigen::Vector3d v_W = Eigen::Vector3d::Zero();             ///< [m/s] of its centre
+  double speed_sigma_m_s = 0;                                ///< of the error of its speed
+  bool has_left = false;                                     ///< where robots work, when seen last
 };
 
 /// What is known of everything that moves.

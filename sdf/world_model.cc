@@ -33,6 +33,18 @@ void Erase(const Shape& shape, const Pose& X_WO, CellRule rule, OccupancyGrid* g
 // How far a thing can be from where it would be by itself.
 double StrayAfter(double s, double a_m_s2) { return a_m_s2 * s * s / 2; }
 
+constexpr HorizonOffset kShort(0.01);  // in which a velocity does not change
+
+// How far off the speed of a motion may be at time t. The variance of a position that goes on with
+// an uncertain velocity is a parabola in time, whose curvature is twice that of the velocity.
+double SpeedSigma(const PredictedMotion& motion, EpisodeTime t, const Eigen::Vector3d& v_W) {
+  if (v_W.isZero(0)) return 0;
+  const Eigen::Matrix3d bend_m2 = motion.covariance_m2(t + kShort) +
+                                  motion.covariance_m2(t - kShort) - 2 * motion.covariance_m2(t);
+  const Eigen::Vector3d along = v_W.normalized();
+  return std::sqrt(std::max(0.0, along.dot(bend_m2 * along) / 2)) / kShort.seconds();
+}
+
 // What all kinds of knowledge share: the order of scans, the grid, the static map, the clock.
 class MappedWorld : public WorldModel {
  public:
@@ -212,7 +224,6 @@ class PredictedWorld final : public MappedWorld {
     std::vector<ObstacleState> moving;
     const auto add = [&](const TrackedObject& object, const Eigen::Quaterniond& R_WO) {
       const PredictedMotion motion = predictor_->Predict(object);
-      constexpr HorizonOffset kShort(0.01);
       const Pose turn(R_WO, Eigen::Vector3d::Zero());
       ObstacleState& state = moving.emplace_back();
       state.id = object.id;
@@ -221,8 +232,12 @@ class PredictedWorld final : public MappedWorld {
       state.X_WO = X_WO * turn * Pose::Translation(object.box_center_O);
       state.half_extents_m = object.box_half_extents_m;
       state.v_W = (X_WO_later.translation() - X_WO.translation()) / kShort.seconds();
+      state.speed_sigma_m_s = SpeedSigma(motion, state.t, state.v_W);
     };
-    for (const auto& [object, R_WO] : named_objects_.Objects()) add(*object, R_WO);
+    for (const auto& [object, R_WO, has_left] : named_objects_.Objects()) {
+      add(*object, R_WO);
+      moving.back().has_left = has_left;
+    }
     for (const auto& object : tracker_.MovingObjects()) {
       add(*object, Eigen::Quaterniond::Identity());
     }
@@ -267,7 +282,7 @@ class PredictedWorld final : public MappedWorld {
 
   std::shared_ptr<const DistanceField> Compose(std::shared_ptr<const SdfGrid> static_W) override {
     believed_.clear();
-    for (const auto& [object, R_WO] : named_objects_.Objects()) {
+    for (const auto& [object, R_WO, has_left] : named_objects_.Objects()) {
       PredictedMotion motion = predictor_->Predict(*object);
       const Pose turn(R_WO, Eigen::Vector3d::Zero());
       motion.X_WO = [X_WO = motion.X_WO, turn](EpisodeTime t) { return X_WO(t) * turn; };

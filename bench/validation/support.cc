@@ -91,7 +91,9 @@ const ControlSample* TickAt(const record::Recording& recording, EpisodeTime t) {
 }
 
 control::JerkLimitedTracker LabTracker(const robot::RobotModel& robot) {
-  return control::JerkLimitedTracker(control::LabLimits(robot, control::SafetySettings()));
+  control::SafetySettings settings;
+  settings.range_margin_rad = kLeastJointMargin_rad;
+  return control::JerkLimitedTracker(control::LabLimits(robot, settings));
 }
 
 StopFrom StopOf(const control::JerkLimitedTracker& tracker, const ControlSample& tick) {

@@ -49,7 +49,11 @@ double FastestSphere_m_s(const robot::RobotModel& robot, const ControlSample& ti
 /// The latest tick at or before `t`, or the first one; null: there is none.
 const ControlSample* TickAt(const record::Recording& recording, EpisodeTime t);
 
-/// The tracker that an arm has under the profile `lab`.
+/// How far joints are to be from their ends.
+inline constexpr double kLeastJointMargin_rad = 0.1;
+
+/// The tracker that an arm has under the profile `lab`, but for what that keeps in reserve of the
+/// joints' ranges.
 control::JerkLimitedTracker LabTracker(const robot::RobotModel& robot);
 
 /// The stop that could begin at a tick.

@@ -136,18 +136,22 @@ void NamedObjects::Add(Track& track, const Sighting& sighting) const {
   while (sighting.t - history.front().t > kMemory) history.erase(history.begin());
 }
 
-bool NamedObjects::IsForgotten(const TrackedObject& object, EpisodeTime t) const {
-  if (t - object.latest().t <= options_.coast) return false;
-  if (!options_.keep_within) return true;
+bool NamedObjects::HasLeft(const TrackedObject& object) const {
+  if (!options_.keep_within) return false;
   const std::array<int, 3> cell = options_.keep_within->CellOf(object.latest().p_WO);
   return !options_.keep_within->Contains(cell[0], cell[1], cell[2]);
+}
+
+bool NamedObjects::IsForgotten(const TrackedObject& object, EpisodeTime t) const {
+  if (t - object.latest().t <= options_.coast) return false;
+  return !options_.keep_within || HasLeft(object);
 }
 
 std::vector<NamedObject> NamedObjects::Objects() const {
   std::vector<NamedObject> objects;
   for (auto track = tracks_.rbegin(); track != tracks_.rend(); ++track) {
-    objects.push_back(
-        {std::make_shared<const TrackedObject>(track->second.object), track->second.R_WO});
+    objects.push_back({std::make_shared<const TrackedObject>(track->second.object),
+                       track->second.R_WO, HasLeft(track->second.object)});
   }
   return objects;
 }

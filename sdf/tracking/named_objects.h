@@ -20,6 +20,7 @@ namespace sidestep::sdf {
 struct NamedObject {
   std::shared_ptr<const TrackedObject> object;
   Eigen::Quaterniond R_WO = Eigen::Quaterniond::Identity();  ///< as last seen
+  bool has_left = false;                                     ///< seen last outside of what is kept
 };
 
 struct NamedObjectsOptions {
@@ -74,6 +75,7 @@ class NamedObjects {
   void Note(const char* what, const Name& name, const ObjectObservation& seen);
   Track& TrackOf(const Name& name, const ObjectObservation& seen);
   void Add(Track& track, const Sighting& sighting) const;
+  bool HasLeft(const TrackedObject& object) const;
   bool IsForgotten(const TrackedObject& object, EpisodeTime t) const;
 
   NamedObjectsOptions options_;

@@ -324,6 +324,80 @@ TEST(Supervisor, LeavesThirtyPercentOfTheSpeedToAStaleView) {
   EXPECT_NEAR(scene.follower().lag().seconds() - lag_s, 0.7, 1e-9);
 }
 
+TEST(Supervisor, DoesNotWaitForWhatHasLeft) {
+  Scene scene;
+  scene.see = [](EpisodeTime t) {
+    ObstacleState ball = Ball({-2, 2, 1}, Vector3d::Zero(), EpisodeTime(0));
+    ball.has_left = true;
+    return ObstacleReport{t, {ball}};
+  };
+  ASSERT_NO_FATAL_FAILURE(scene.RunTo(1));
+  EXPECT_THAT(scene.events(), testing::IsEmpty());
+}
+
+TEST(Supervisor, BelievesASpeedAsFarAsItIsKnown) {
+  for (const double sigma_m_s : {0.02, 0.05}) {
+    Scene scene;
+    scene.see = [&](EpisodeTime t) {
+      ObstacleState ball = Ball({-3, 3, 1}, {0, -0.6, 0}, t);
+      ball.speed_sigma_m_s = sigma_m_s;
+      return ObstacleReport{t, {ball}};
+    };
+    ASSERT_NO_FATAL_FAILURE(scene.RunTo(1));
+    const Finding* const found = scene.First(SafetyCheck::kObstacleTooFast, Reaction::kBrake);
+    ASSERT_EQ(found != nullptr, sigma_m_s < 0.03);
+    EXPECT_NEAR(found == nullptr ? 0.54 : found->value, 0.54, 1e-9);
+  }
+}
+
+// What it may do in the time that an arm needs to stop is bounded by its speed, too: 0.2 s after it
+// was seen, it is no further than 0.1 m from there, whatever its acceleration.
+TEST(Supervisor, ReckonsWithNothingFasterThanDeclared) {
+  SafetySettings settings = Lab();
+  settings.obstacle_acceleration_m_s2 = 1000;
+  settings.stale_s = 10;
+  for (const double after_s : {0.2, 0.6}) {
+    Scene scene(settings);
+    const ObstacleState ball = Ball({-0.6, 0, 1}, Vector3d::Zero(), EpisodeTime(0));
+    const double left_m = scene.DistanceTo(ball) - settings.margin_m;
+    ASSERT_GT(left_m, 0.15);
+    ASSERT_LT(left_m, 0.35);
+    scene.see = [&](EpisodeTime t) { return ObstacleReport{t, {ball}}; };
+    ASSERT_NO_FATAL_FAILURE(scene.RunTo(after_s));
+    EXPECT_EQ(scene.First(SafetyCheck::kStopPath, Reaction::kHold) != nullptr, after_s > 0.5);
+  }
+}
+
+// From a speed that would need a longer way to rest the arm is kept away, whatever it is told.
+TEST(Supervisor, KeepsEveryStopShort) {
+  const double kLongest_s = 0.1, kFurthest_m = 0.02;
+  for (const bool by_time : {true, false}) {
+    SafetySettings settings = Lab();
+    (by_time ? settings.stop_s : settings.stop_m) = by_time ? kLongest_s : kFurthest_m;
+    Scene scene(settings);
+    const robot::RobotModel panda = Panda();
+    const JerkLimitedTracker tracker(LabLimits(panda, settings));
+    double longest_s = 0, furthest_m = 0;
+    for (int tick = 1; tick <= 4000; ++tick) {
+      ASSERT_NO_FATAL_FAILURE(scene.RunTo(tick * kTick_s));
+      Eigen::VectorXd q_end = scene.state().q;
+      for (int j = 0; j < 7; ++j) {
+        const JointMotion motion = {scene.state().q(j), scene.state().v(j), scene.state().a(j)};
+        const JointStop stop(motion, tracker.bounds(j), kTick_s);
+        longest_s = std::max(longest_s, stop.ticks() * kTick_s);
+        q_end(j) = stop.q_end();
+      }
+      const Vector3d way_m = panda.ComputeToolPose(q_end).translation() -
+                             panda.ComputeToolPose(scene.state().q).translation();
+      furthest_m = std::max(furthest_m, way_m.norm());
+    }
+    EXPECT_LE(by_time ? longest_s : furthest_m, by_time ? kLongest_s : kFurthest_m);
+    EXPECT_GT(by_time ? longest_s : furthest_m, 0.7 * (by_time ? kLongest_s : kFurthest_m));
+    EXPECT_NE(scene.First(SafetyCheck::kLongStop, Reaction::kSlow), nullptr);
+    EXPECT_EQ(scene.mode(), robot::RobotMode::kMoving);
+  }
+}
+
 TEST(Supervisor, SlowsBeforeItHasToStop) {
   Scene scene;
   // In the way of the hand, and stays.

@@ -9,7 +9,6 @@
 namespace sidestep::bench {
 namespace {
 
-constexpr double kLeast_rad = 0.1;
 constexpr double kRounding_rad = 1e-6;
 
 Facts Measure(const ValidationRun& run) {
@@ -32,9 +31,9 @@ ItemFinding Judge(const Evidence& evidence) {
   ItemFinding finding;
   const double least_rad = -told.front().value;
   finding.verdict =
-      least_rad >= kLeast_rad - kRounding_rad ? ItemVerdict::kPass : ItemVerdict::kFail;
+      least_rad >= kLeastJointMargin_rad - kRounding_rad ? ItemVerdict::kPass : ItemVerdict::kFail;
   finding.evidence = fmt::format("at least {:.3f} rad from the ends of the joints", least_rad);
-  for (const NamedCase& one : WorstOf(told, -kLeast_rad + kRounding_rad, "{:.3f}")) {
+  for (const NamedCase& one : WorstOf(told, -kLeastJointMargin_rad + kRounding_rad, "{:.3f}")) {
     finding.worst.push_back({one.name, one.what.substr(1) + " rad"});
   }
   return finding;
