@@ -7,6 +7,7 @@
 #include <deque>
 #include <exception>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -45,6 +46,13 @@ constexpr double kPlanningShare = 0.9;  // of a cycle in real time; judging the 
 constexpr double kHandOver_s = 5e-3;    // a plan is with the robot so long before it takes effect
 
 constexpr const char* kLate = "late";  // the status of a plan that came after its moment
+
+// What is nearer than this under the profile lab, its supervisor stops for.
+double FleesWithin(const scenarios::Scenario& scenario) {
+  constexpr double kSoon_s = 1.5;
+  const bool is_stopped = scenario.safety.profile == scenarios::SafetyProfile::kLab;
+  return is_stopped ? kSoon_s : std::numeric_limits<double>::infinity();
+}
 
 StageTimes NoTimes() {
   StageTimes times;
@@ -99,7 +107,8 @@ class Loop {
         model_(sdf::MakeWorldModel(MakeWorldModelOptions(
             scenario, scenario.epsilon_m + robot.largest_sphere_radius_m(), world))),
         horizon_s_(HorizonOf(scenario, *planner_)),
-        replanner_(*planner_, {horizon_s_, scenario.step_s, scenario.q_goal}),
+        replanner_(*planner_,
+                   {horizon_s_, scenario.step_s, scenario.q_goal, FleesWithin(scenario)}),
         goal_(scenario.q_goal, scenario.dwell_s, robot::ToleranceScale(planner_->robot())),
         latency_(scenario),
         clock_(options.clock == EpisodeClock::kWall ? MakeWallClock() : MakeVirtualClock()),

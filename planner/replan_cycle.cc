@@ -186,7 +186,10 @@ CycleResult CycleWork::Run() const {
       std::optional<PlanResult> anew = plan_anew();
       if (anew && IsAllThatWasAsked(anew->status)) show(*std::move(anew), t_effect_);
     }
-    if (clearance.first_contact && running_) {
+    const bool has_to_flee =
+        clearance.first_contact &&
+        (*clearance.first_contact - t_effect_).seconds() <= options_.flees_within_s;
+    if (has_to_flee && running_) {
       if (request->start < t_effect_) {
         std::optional<PlanResult> anew = plan_anew();
         if (anew && anew->trajectory && IsSafer(anew->clearance, clearance)) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -19,6 +20,10 @@ struct ReplannerOptions {
   double horizon_s = 3;  ///< T, a multiple of step_s
   double step_s = 0.1;   ///< between support states
   Eigen::VectorXd q_goal;
+  /// A predicted contact is fled from, by a new horizon or by braking, only if it is no further
+  /// ahead than this [s], > 0. What is predicted for later is often wrong, and who flees from it
+  /// begins again and again: for robots that are stopped anyway before they touch anything.
+  double flees_within_s = std::numeric_limits<double>::infinity();
 
   int num_states() const;  ///< of a whole horizon
 };

@@ -324,6 +324,23 @@ TEST(Replanner, BrakesBeforeWhatComesIfThePlannerFindsNone) {
   EXPECT_GT(loop.min_clearance_m(), 0);
 }
 
+// Where somebody else stops the robot in time, a contact that is far ahead is none yet.
+TEST(Replanner, GoesOnTowardsWhatIsFarAheadIfItNeedNotFlee) {
+  for (const double flees_within_s : {0.4, 3.0}) {
+    MovingBallWorld world = NothingThere();
+    PlannerThatMayFail planner;
+    Replanner replanner(planner, {3, 0.1, kGoal, flees_within_s});
+    const JointState start{EpisodeTime(0), kStart, Eigen::Vector2d::Zero()};
+    RunAndAccept(replanner, world, start, 0.1);
+    planner.fails = true;
+    world.Replace({0.95, 0, 0}, {0, 0, 0}, 0.1);  // it comes there after more than 0.5 s
+    const JointState later{EpisodeTime(0.1), kStart, Eigen::Vector2d::Zero()};
+    const CycleResult cycle = RunAndAccept(replanner, world, later, 0.1);
+    EXPECT_EQ(cycle.record.accepted, flees_within_s > 1);
+    EXPECT_EQ(cycle.record.status == "braked", flees_within_s > 1);
+  }
+}
+
 TEST(Replanner, RestsUntilTheFirstPlanTakesEffect) {
   MovingBallWorld world = NothingThere();
   Loop loop(world);
@@ -595,7 +612,8 @@ TEST(Replanner, RefusesOptionsOutOfRange) {
                                    {0.2, 0.1, kGoal},
                                    {-3, 0.1, kGoal},
                                    {3, 0.1, Eigen::VectorXd::Zero(3)},
-                                   {3e-200, 1e-200, kGoal}};
+                                   {3e-200, 1e-200, kGoal},
+                                   {3, 0.1, kGoal, 0}};
   for (const ReplannerOptions& options : kBad) {
     EXPECT_THROW(Replanner(*planner, options), std::invalid_argument);
   }
