@@ -85,7 +85,8 @@ Motion Circling(const Course& course, double speed_m_s, double acceleration_m_s2
 constexpr Behaviour kBehaviours[] = {
     {"stand", "stands in the way", 0,
      [](const Course& course, double, double) {
-       return Motions{scenarios::LinearMotion{course.p_WThrough, course.across_W, 0, kNever, 0}};
+       const Vector3d p_W = course.p_WThrough - course.aside_m * course.across_W;
+       return Motions{scenarios::LinearMotion{p_W, course.across_W, 0, kNever, 0}};
      }},
     {"cross", "crosses the tool's way", 0,
      [](const Course& course, double v, double) {
@@ -192,7 +193,9 @@ void SetBehaviour(const std::string& name, double speed_m_s, std::uint64_t seed,
   for (int draw = 0; draw < kMostDraws; ++draw) {
     scenario.moving_obstacles = as_it_was.moving_obstacles;
     Course course = DrawCourse(as_it_was, robot, random);
-    course.least_way_m += 0.01 * draw;  // what is slow may have to come from further off
+    // What is slow may have to come from further off, and what stands may have to stand further.
+    course.aside_m = 0.01 * draw;
+    course.least_way_m += course.aside_m;
     const Motions motions =
         behaviour.make(course, speed_m_s, scenario.safety.obstacle_acceleration_m_s2);
     scenario.moving_obstacles.front().motion = motions.front();

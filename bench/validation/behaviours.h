@@ -17,6 +17,7 @@ struct Course {
   Eigen::Vector3d along_W;     ///< unit, level: as the tool goes
   double meets_after_s = 0;    ///< at constant speed it is at p_WThrough then
   double least_way_m = 0;      ///< it comes at least from so far
+  double aside_m = 0;          ///< what stands stands so far before p_WThrough
 };
 
 /// How an obstacle moves, at most as fast as asked for.

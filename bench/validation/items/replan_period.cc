@@ -12,10 +12,13 @@ namespace {
 constexpr double kMostPeriods = 2;
 constexpr double kStill_rad_s = 0.05;
 
-// Who is made to brake waits until he rests before he plans anew.
+// Who is made to brake, or is pushed, waits until he rests before he plans anew.
 bool ComesToRest(const record::Recording& recording, EpisodeTime from, EpisodeTime to) {
   const ControlSample *const first = TickAt(recording, from), *const last = TickAt(recording, to);
-  return first != nullptr && IsToldToMove(*first) && last->v_command.norm() < kStill_rad_s;
+  if (first == nullptr || last->v_command.norm() >= kStill_rad_s) return false;
+  return std::any_of(first, last + 1, [](const ControlSample& tick) {
+    return IsToldToMove(tick) || IsMoving(tick.v);
+  });
 }
 
 Facts Measure(const ValidationRun& run) {
