@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "sidestep/core/rotation_vector.h"
 #include "sidestep/hardware/planar_pose.h"
@@ -129,6 +130,28 @@ class Refinement {
   std::optional<RotationPrior> prior_;
 };
 
+// What the sum of so many squares of normal errors exceeds once in a hundred times. Source: the
+// approximation of Wilson & Hilferty, PNAS 17(12):684-688, 1931.
+double RareSquares(double freedom) {
+  constexpr double kRare = 2.326;
+  const double spread = 2 / (9 * freedom);
+  return freedom * std::pow(1 - spread + kRare * std::sqrt(spread), 3);
+}
+
+// What a line that is laid through n even places keeps of a wave of variance 1 and any phase, by
+// which they err, so many waves from one to the next: the variances of its middle and of its ends
+// beyond that. The ends are one step beyond the last places.
+Eigen::Vector2d LeftOfWave(double n, double waves) {
+  double middle = 0, turn = 0;
+  for (int k = 0; k < static_cast<int>(n); ++k) {
+    const double place = k - (n - 1) / 2;
+    const double angle = 2 * std::numbers::pi * waves * place;
+    middle += std::cos(angle) / n;
+    turn += 6 * place / (n * (n - 1)) * std::sin(angle);
+  }
+  return {middle * middle, turn * turn};
+}
+
 // The four of a tag, whose first corner is this one.
 void AppendEdges(const Eigen::Matrix<double, 2, 4>& corners_px, std::size_t first_corner,
                  double sigma_px, std::vector<Edge>* edges) {
@@ -148,12 +171,16 @@ void AppendEdges(const Eigen::Matrix<double, 2, 4>& corners_px, std::size_t firs
 
 EdgeErrors ErrorsOfEdge(const Eigen::Vector2d& from_px, const Eigen::Vector2d& to_px,
                         double sigma_px) {
-  constexpr double kLeastPlaces = 16, kApart_px = 8, kLeastCrossed = 0.25;
-  const Eigen::Vector2d along = to_px - from_px;
-  const double n = std::max(kLeastPlaces, std::floor(along.norm() / kApart_px));
-  const double crossed = std::max(kLeastCrossed, along.cwiseAbs().minCoeff());
-  const double middle_px = sigma_px * std::sqrt((1 + 1 / (crossed * crossed)) / n);
-  return {middle_px, middle_px * std::sqrt(3 * (n + 1) / (n - 1))};
+  constexpr double kLeastPlaces = 16, kApart_px = 8;
+  constexpr double kRows = 2.4, kSlopes = 20, kColumns = 0.4;  // shares of sigma
+  const Eigen::Vector2d span = (to_px - from_px).cwiseAbs();
+  const double n = std::max(kLeastPlaces, std::floor(span.norm() / kApart_px));
+  const double along_px = span.maxCoeff() / (n + 1), across_px = span.minCoeff() / (n + 1);
+  const double rows = kRows / (1 + kSlopes * across_px / along_px);
+  const Eigen::Vector2d variance = Eigen::Vector2d(1, 3 * (n + 1) / (n - 1)) / n +
+                                   rows * rows * LeftOfWave(n, 2 * across_px) +
+                                   kColumns * kColumns * LeftOfWave(n, along_px);
+  return {sigma_px * std::sqrt(variance(0)), sigma_px * std::sqrt(variance(1))};
 }
 
 std::optional<BodyPose> LocateBody(const robot::CameraIntrinsics& camera, const TaggedBody& body,
@@ -193,14 +220,18 @@ std::optional<BodyPose> LocateBody(const robot::CameraIntrinsics& camera, const 
   pose.X_CO = best.X_CO;
   pose.num_tags = num_tags;
   pose.reprojection_px = std::sqrt(best.squares_px / (2.0 * static_cast<double>(corners.size())));
-  pose.covariance = best.information.ldlt().solve(Matrix6::Identity());
+  // Now and then an edge is mistaken by many times its error: where the detector's first guess of
+  // it was so far off that it did not see both of its sides.
+  const double freedom = 8.0 * num_tags - 6 + (prior ? 3 : 0);
+  pose.covariance = std::max(1.0, best.cost / RareSquares(freedom)) *
+                    best.information.ldlt().solve(Matrix6::Identity());
   constexpr double kSame_rad = 1e-3;
   Vector6 apart;
   apart << other.X_CO.translation() - best.X_CO.translation(),
       RotationVector(other.X_CO.rotation() * best.X_CO.rotation().conjugate());
   if (std::isfinite(other.cost) && apart.tail<3>().norm() > kSame_rad) {
-    pose.ambiguity = other.cost > 0 ? std::sqrt(best.cost / other.cost) : 1;
-    if (pose.ambiguity >= kAmbiguous) pose.covariance += apart * apart.transpose() / 4;
+    pose.ambiguity = std::exp((best.cost - other.cost) / 2);
+    pose.covariance += pose.ambiguity / (1 + pose.ambiguity) * apart * apart.transpose();
   }
   if (!pose.covariance.allFinite()) return std::nullopt;
   return pose;

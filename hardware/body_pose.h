@@ -32,36 +32,38 @@ struct RotationPrior {
   double sigma_rad = 0;  ///< about each axis
 };
 
-/// From so much on, one of two poses is not trusted. Source: a rule of thumb of PhotonVision's
-/// documentation.
-inline constexpr double kAmbiguous = 0.2;
-
 /// Where a body was seen.
 struct BodyPose {
   Pose X_CO;
   /// Of the errors of position and of rotation (a rotation vector), both in the axes of C; m, rad.
+  /// Where the errors of edges explain what is left less often than once in a hundred times, it is
+  /// larger by as much as that takes.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   int num_tags = 0;
   double reprojection_px = 0;  ///< root mean square over all corners, x and y alike
-  /// The errors of this pose to those of the other way to see it, from 0 (nobody could confuse
-  /// them) to 1 (nobody could tell them apart); what further faces and a prior say counts. From
-  /// kAmbiguous on, the covariance holds how far the two are apart.
+  /// How likely the other way to see it is, for one of this, from 0 (nobody could confuse them) to
+  /// 1 (nobody could tell them apart); what further faces and a prior say counts. The covariance
+  /// holds how far the two are apart, as likely as that is.
   double ambiguity = 0;
 };
 
-/// How an edge of a tag errs across itself [px]. The detector looks for it at N places along it,
-/// one every 8 px and at least 16, and lays a line through them; where each errs by sigma, the
-/// middle of the line errs by `middle` = sigma / sqrt(N), and each end beyond that, one up and one
-/// down, by `turn` = middle sqrt(3 (N + 1) / (N - 1)). An edge along the rows or columns of pixels
-/// errs alike at all places: with c of them crossed, and no fewer than a quarter, both are larger
-/// by sqrt(1 + 1 / c^2). Sources: refine_edges of AprilRobotics/apriltag 3.3.0; the law of the
-/// straight line fitted to even places; c as measured with rendered pictures (docs/hardware.md).
+/// How an edge of a tag errs across itself [px]: its middle, and each end beyond that, one up and
+/// one down, by `turn`. The detector looks for an edge at N even places along it, one every 8 px
+/// and at least 16, and lays a line through them. Each place errs by sigma, one as if there were no
+/// other: that leaves middle = sigma / sqrt(N) and turn = middle sqrt(3 (N + 1) / (N - 1)).
+/// Besides, grey levels are read at whole pixels, so that a place errs by where it lies among them.
+/// Of that, what comes back with each half pixel that the edge crosses is large for edges along the
+/// rows or columns, 2.4 sigma / (1 + 20 slope); what comes back with each pixel along it is 0.4
+/// sigma. As places are even, they sample these waves: where the step from one to the next is a
+/// whole number of waves, all of them err alike, and nothing averages out. Sources: refine_edges of
+/// AprilRobotics/apriltag 3.3.0; the law of the straight line fitted to even places; the sizes as
+/// measured with 680 rendered pictures (docs/hardware.md).
 struct EdgeErrors {
   double middle_px = 0, turn_px = 0;
 };
 EdgeErrors ErrorsOfEdge(const Eigen::Vector2d& from_px, const Eigen::Vector2d& to_px,
                         double sigma_px);
-inline constexpr double kEdgeSigma_px = 0.09;  ///< of rendered pictures (docs/sensors.md)
+inline constexpr double kEdgeSigma_px = 0.082;  ///< of rendered pictures (docs/sensors.md)
 
 /// The pose that explains the edges of all tags of a body best, in pixels: a joint least-squares
 /// fit from either solution of the largest tag (hardware/planar_pose.h).

@@ -12,6 +12,13 @@ namespace {
 // The library wants room around a pixel; nothing smaller holds a tag that could be read.
 constexpr int kLeastImage_px = 32;
 
+double FromRim(const TagDetection& tag, const robot::GreyImage& image) {
+  const Eigen::Array2d last(image.width - 1, image.height - 1);
+  const Eigen::Array2d least = tag.corners_px.rowwise().minCoeff();
+  const Eigen::Array2d most = tag.corners_px.rowwise().maxCoeff();
+  return least.min(last - most).minCoeff();
+}
+
 struct DestroyDetections {
   void operator()(zarray_t* list) const { apriltag_detections_destroy(list); }
 };
@@ -62,7 +69,8 @@ std::vector<TagDetection> TagDetector::Detect(const robot::GreyImage& image) {
       tag.corners_px.col(k) = Eigen::Vector2d(seen->p[k][0] - 0.5, seen->p[k][1] - 0.5);
     }
     if (tag.margin < options_.least_margin || !tag.corners_px.allFinite() ||
-        tag.shortest_edge_px() < options_.least_edge_px) {
+        tag.shortest_edge_px() < options_.least_edge_px ||
+        FromRim(tag, image) < options_.least_from_rim_px) {
       continue;
     }
     by_id[tag.id].push_back(tag);

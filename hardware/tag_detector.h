@@ -42,6 +42,10 @@ struct TagDetectorOptions {
   int most_hamming = 1;
   double least_margin = 30;
   double least_edge_px = 25;
+  /// Of corners, from the rim of the picture. Edges are looked for 4 px to either side of where
+  /// they were found in the smaller picture: of those nearer to the rim, or beyond it, one side is
+  /// not seen.
+  double least_from_rim_px = 5;
 };
 
 /// Finds AprilTags of the family tag36h11 by AprilRobotics' library, in one thread, so that equal

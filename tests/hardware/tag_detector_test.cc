@@ -64,6 +64,23 @@ TEST_F(TagDetector, LeavesOutWhatIsTooSmallOrTooFaint) {
   EXPECT_TRUE(hardware::TagDetector({.least_margin = 250}).Detect(image).empty());
 }
 
+// What the library makes up for what it does not see is wrong by pixels.
+TEST_F(TagDetector, LeavesOutWhatThePictureCutsOff) {
+  hardware::TagDetector detector;
+  constexpr int kModule_px = 10;
+  GreyImage whole = Paper(200, 160);
+  Print(3, 40, 30, kModule_px, &whole);
+  // Its black begins one module after its white rim.
+  for (const int cut_px : {0, 40, 44, 46, 48, 50, 52, 54}) {
+    GreyImage image = Paper(whole.width - cut_px, whole.height);
+    for (int y = 0; y < image.height; ++y) {
+      for (int x = 0; x < image.width; ++x) image.At(x, y) = whole.At(x + cut_px, y);
+    }
+    const double from_rim_px = 40 + kModule_px - 0.5 - cut_px;
+    EXPECT_EQ(detector.Detect(image).size(), from_rim_px > 5 ? 1u : 0u) << cut_px;
+  }
+}
+
 TEST_F(TagDetector, TakesPicturesOfAnySize) {
   hardware::TagDetector detector;
   for (const int size : {0, 1, 2, 31, 32, 33, 47}) {
