@@ -25,8 +25,17 @@ constexpr std::uintmax_t kMaxResultBytes = 1 << 24;
 
 Json NumberOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+Json TextOrNull(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
+
+std::string TextIn(const Json& value) { return value.is_null() ? "" : value.get<std::string>(); }
+
 double NumberOrNaN(const Json& value) {
   return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+}
+
+// What results of earlier programs do not tell.
+double IfThere(const Json& map, const std::string& key) {
+  return NumberOrNaN(map.contains(key) ? map[key] : Json(nullptr));
 }
 
 const Json& At(const Json& map, const std::string& key, const std::string& path) {
@@ -46,7 +55,8 @@ Json StageTable(const StageTimes& times) {
   for (const auto& [stage, seconds] : times) {
     table[stage] = {{"p50_ms", NumberOrNull(1e3 * Quantile(seconds, 0.50))},
                     {"p95_ms", NumberOrNull(1e3 * Quantile(seconds, 0.95))},
-                    {"p99_ms", NumberOrNull(1e3 * Quantile(seconds, 0.99))}};
+                    {"p99_ms", NumberOrNull(1e3 * Quantile(seconds, 0.99))},
+                    {"max_ms", NumberOrNull(1e3 * Quantile(seconds, 1))}};
   }
   return table;
 }
@@ -58,6 +68,22 @@ Json AnswerTable(const std::vector<double>& seconds) {
           {"p50_us", 1e6 * Quantile(seconds, 0.5)},
           {"p99_9_us", 1e6 * Quantile(seconds, 0.999)},
           {"max_us", 1e6 * Quantile(seconds, 1)}};
+}
+
+RunClock ClockIn(const Json& wall_clock, const std::string& path) {
+  const auto number = [&](const Json& map, const char* key) {
+    return NumberOrNaN(At(map, key, path));
+  };
+  const Json& cycle = At(At(wall_clock, "cycle_cpu", path), "cycle", path);
+  RunClock clock;
+  clock.episode_s = number(wall_clock, "episode_s");
+  clock.cycle_p50_ms = number(cycle, "p50_ms");
+  clock.cycle_p95_ms = number(cycle, "p95_ms");
+  clock.cycle_p99_ms = number(cycle, "p99_ms");
+  clock.cycle_max_ms = IfThere(cycle, "max_ms");
+  At(wall_clock, "cycles_over_charge", path).get_to(clock.cycles_over_charge);
+  At(wall_clock, "late_plans", path).get_to(clock.late_plans);
+  return clock;
 }
 
 // The leaves of a tree by their paths; lists of plain values are leaves.
@@ -92,31 +118,32 @@ std::map<std::string, int> TrackEventCounts(const record::Recording& recording) 
 std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& scenario,
                        const RunIdentity& identity,
                        const std::map<std::string, std::string>& versions) {
+  const RunRow row = RowOf(result, scenario);
   Json json;
   json["format"] = "sidestep-result-1";
   json["scenario"] = scenario.name;
-  json["robot"] = scenario.robot;
+  json["robot"] = row.subject.robot;
   const auto robot_at = result.recording.header.find("robot_at");
   json["robot_at"] =
       robot_at == result.recording.header.end() ? Json(nullptr) : Json(robot_at->second);
-  json["planner"] = scenario.planner;
-  json["knowledge"] = scenario.knowledge;
-  json["predictor"] = scenario.predictor;
+  json["planner"] = row.subject.planner;
+  json["knowledge"] = row.subject.knowledge;
+  json["predictor"] = row.subject.predictor;
   json["seed"] = scenario.seed;
   json["choices"] = scenario.choices;
-  json["drawn"] = scenario.drawn;
-  json["outcome"] = ToString(result.outcome);
+  json["drawn"] = row.drawn;
+  json["charged_latency_s"] = NumberOrNull(row.subject.charged_latency_s);
+  json["outcome"] = row.outcome;
   const bool is_whole = result.outcome != Outcome::kAborted;
-  json["ended"] = is_whole ? Json(ToString(Ending(result.recording.metrics))) : Json(nullptr);
-  json["reason"] = result.reason.empty() ? Json(nullptr) : Json(result.reason);
-  const std::string touched = TouchedBy(result.recording);
-  json["touched"] = touched.empty() ? Json(nullptr) : Json(touched);
+  json["ended"] = is_whole ? Json(ToString(Ending(row.metrics))) : Json(nullptr);
+  json["reason"] = TextOrNull(row.error);
+  json["touched"] = TextOrNull(row.touched);
   json["would_trip"] = Json::array();
-  for (const TripMetric& metric : TrippedBy(result.recording.metrics)) {
+  for (const TripMetric& metric : TrippedBy(row.metrics)) {
     json["would_trip"].push_back(metric.name);
   }
   for (const Metric& metric : Metrics()) {
-    json[metric.name] = ValueOf(metric, result.recording.metrics.at(metric.name));
+    json[metric.name] = ValueOf(metric, row.metrics.at(metric.name));
   }
   json["parameters"] = Json::parse(YamlToJson(scenarios::ToYaml(scenario)));
   json["identity"] = {
@@ -132,43 +159,49 @@ std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& s
                                      {"value", NumberOrNull(event.value)},
                                      {"limit", NumberOrNull(event.limit)}});
   }
-  json["wall_clock"] = {{"episode_s", result.wall_s},
+  json["wall_clock"] = {{"episode_s", row.clock.episode_s},
                         {"cycle_cpu", StageTable(result.times)},
-                        {"cycles_over_charge", result.cycles_over_charge},
-                        {"late_plans", result.late_plans},
+                        {"cycles_over_charge", row.clock.cycles_over_charge},
+                        {"late_plans", row.clock.late_plans},
                         {"answers", AnswerTable(result.answers_s)}};
   return JsonText(json);
 }
 
-ResultSummary ReadResult(const std::string& path) {
+StoredResult ReadResult(const std::string& path) {
   const std::string text = ReadTextFile(path, kMaxResultBytes);
   const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!json.is_object() || !json.contains("format") || json["format"] != "sidestep-result-1") {
     throw InputError(path, "is not a result.json of sidestep");
   }
-  ResultSummary summary;
+  const auto at = [&](const std::string& key) -> const Json& { return At(json, key, path); };
+  StoredResult stored;
+  RunRow& row = stored.row;
   try {
-    summary.scenario = At(json, "scenario", path).get<std::string>();
-    summary.knowledge = At(json, "knowledge", path).get<std::string>();
-    const auto word = At(json, "outcome", path).get<std::string>();
-    const std::optional<Outcome> outcome = OutcomeFromString(word);
-    if (!outcome) throw InputError(path, "is not a whole result: no outcome is '" + word + "'");
-    summary.outcome = *outcome;
-    const Json& touched = At(json, "touched", path);
-    if (!touched.is_null()) summary.touched = touched.get<std::string>();
-    Flatten(At(json, "parameters", path), "", summary.parameters);
+    at("scenario").get_to(stored.scenario);
+    at("seed").get_to(stored.seed);
+    at("outcome").get_to(row.outcome);
+    if (!OutcomeFromString(row.outcome)) {
+      throw InputError(path, "is not a whole result: no outcome is '" + row.outcome + "'");
+    }
+    row.error = TextIn(at("reason"));
+    row.touched = TextIn(at("touched"));
+    at("drawn").get_to(row.drawn);
+    row.subject = {at("robot"), at("planner"), at("knowledge"), at("predictor"),
+                   IfThere(json, "charged_latency_s")};
+    Flatten(at("parameters"), "", stored.parameters);
+    at("versions").get_to(stored.versions);
     for (const Metric& metric : Metrics()) {
-      summary.metrics[metric.name] = NumberOrNaN(At(json, metric.name, path));
+      row.metrics[metric.name] = NumberOrNaN(at(metric.name));
     }
-    const Json* cycle = &json;
-    for (const char* const key : {"wall_clock", "cycle_cpu", "cycle", "p50_ms"}) {
-      cycle = &At(*cycle, key, path);
-    }
-    summary.cycle_p50_ms = NumberOrNaN(*cycle);
+    row.identity.scenario = At(at("identity"), "scenario", path);
+    row.identity.models = At(at("identity"), "models", path);
+    const auto build = stored.versions.find("build_id");
+    if (build != stored.versions.end()) row.identity.build = build->second;
+    row.clock = ClockIn(at("wall_clock"), path);
   } catch (const Json::exception&) {  // whose text is of no use to who wrote the file
     throw InputError(path, "is not a whole result: a value is of the wrong kind");
   }
-  return summary;
+  return stored;
 }
 
 }  // namespace sidestep::bench

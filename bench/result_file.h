@@ -1,10 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 
 #include "sidestep/bench/episode.h"
 #include "sidestep/bench/run_identity.h"
+#include "sidestep/bench/run_row.h"
 
 namespace sidestep::bench {
 
@@ -23,18 +25,17 @@ std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& s
                        const RunIdentity& identity,
                        const std::map<std::string, std::string>& versions);
 
-/// What a comparison table needs of a result.json.
-struct ResultSummary {
-  std::string scenario, knowledge;
-  Outcome outcome = Outcome::kAborted;
-  std::string touched;  ///< first; empty: nothing
+/// What a result.json tells: a run's row, and the run.
+struct StoredResult {
+  RunRow row;  ///< without factors, trace and command
+  std::string scenario;
+  std::uint64_t seed = 1;
   /// Of the scenario as run, by their paths in a scenario file, e.g. "planner.epsilon_m": "0.2".
   std::map<std::string, std::string> parameters;
-  std::map<std::string, double> metrics;  ///< NaN where null
-  double cycle_p50_ms = 0;
+  std::map<std::string, std::string> versions;
 };
 
 /// @throws InputError if the file is missing, not JSON, or not a result.
-ResultSummary ReadResult(const std::string& path);
+StoredResult ReadResult(const std::string& path);
 
 }  // namespace sidestep::bench

@@ -65,6 +65,18 @@ RunSubject SubjectOf(const scenarios::Scenario& scenario) {
   return subject;
 }
 
+RunRow RowOf(const EpisodeResult& result, const scenarios::Scenario& scenario) {
+  RunRow row;
+  row.drawn = scenario.drawn;
+  row.outcome = ToString(result.outcome);
+  row.error = result.reason;
+  row.touched = TouchedBy(result.recording);
+  row.metrics = result.recording.metrics;
+  row.subject = SubjectOf(scenario);
+  row.clock = ClockOf(result);
+  return row;
+}
+
 RunRow FailedRow(const Factors& factors, const std::string& why) {
   RunRow row;
   row.factors = factors;
@@ -78,13 +90,10 @@ RecordedRun RunEpisodeRow(const scenarios::Scenario& scenario, const robot::Robo
   std::optional<record::Recording> recording;
   RunRow made = MakeRow(scenario, factors, [&](RunRow& row) {
     EpisodeResult result = RunEpisode(scenario, robot, make_world);
+    row = RowOf(result, scenario);
+    row.factors = factors;
     recording = std::move(result.recording);
     if (result.outcome != Outcome::kAborted) CheckFinite(*recording);
-    row.error = result.reason;
-    row.outcome = ToString(result.outcome);
-    row.touched = TouchedBy(*recording);
-    row.metrics = recording->metrics;
-    row.clock = ClockOf(result);
   });
   return {std::move(made), std::move(recording)};
 }

@@ -54,6 +54,10 @@ struct RunRow {
   std::string command;  ///< runs it again, if `sidestep run` can
 };
 
+/// What an episode came to; its factors, identity, trace and command are nobody's to know but who
+/// ran it.
+RunRow RowOf(const EpisodeResult& result, const scenarios::Scenario& scenario);
+
 /// The row of something that could not be done, and why.
 RunRow FailedRow(const Factors& factors, const std::string& why);
 

@@ -8,39 +8,50 @@
 #include <string>
 #include <vector>
 
+#include "sidestep/bench/database/run_files.h"
 #include "sidestep/bench/metrics/robot_limit_metrics.h"
 #include "sidestep/bench/result_file.h"
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
+#include "sidestep/cli/machine.h"
+#include "sidestep/cli/out_folder.h"
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/joined.h"
 #include "sidestep/core/number_text.h"
 #include "sidestep/core/parse_number.h"
 
 namespace sidestep::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr std::size_t kMostDifferences = 5;  // that get a column of their own
 
-std::string ParameterOf(const bench::ResultSummary& result, const std::string& key) {
+struct CompareOptions {
+  std::vector<std::string> folders;
+  std::string out;
+};
+
+std::string ParameterOf(const bench::StoredResult& result, const std::string& key) {
   const auto found = result.parameters.find(key);
   return found == result.parameters.end() ? "-" : found->second;
 }
 
-std::string Number(const bench::ResultSummary& result, const char* metric, double scale,
+std::string Number(const bench::StoredResult& result, const char* metric, double scale,
                    const char* format) {
-  return FiniteText(format, scale * result.metrics.at(metric));
+  return FiniteText(format, scale * result.row.metrics.at(metric));
 }
 
 // The parameters in which some result differs from the first; a text says nothing of a run.
-std::vector<std::string> FindDifferences(const std::vector<bench::ResultSummary>& results) {
+std::vector<std::string> FindDifferences(const std::vector<bench::StoredResult>& results) {
   std::set<std::string> keys;
-  for (const bench::ResultSummary& result : results) {
+  for (const bench::StoredResult& result : results) {
     for (const auto& [key, value] : result.parameters) keys.insert(key);
   }
   keys.erase("description");
   keys.erase("knowledge");  // has a column in any case
   std::erase_if(keys, [&](const std::string& key) {
-    return std::all_of(results.begin(), results.end(), [&](const bench::ResultSummary& result) {
+    return std::all_of(results.begin(), results.end(), [&](const bench::StoredResult& result) {
       return ParameterOf(result, key) == ParameterOf(results.front(), key);
     });
   });
@@ -87,10 +98,10 @@ std::string Rounded(const std::string& value) {
 }
 
 // The values of a parameter, one a result: with as few digits as tell them apart.
-std::vector<std::string> ShortValues(const std::vector<bench::ResultSummary>& results,
+std::vector<std::string> ShortValues(const std::vector<bench::StoredResult>& results,
                                      const std::string& key) {
   std::vector<std::string> values, rounded;
-  for (const bench::ResultSummary& result : results) {
+  for (const bench::StoredResult& result : results) {
     values.push_back(ParameterOf(result, key));
     rounded.push_back(Rounded(values.back()));
   }
@@ -118,17 +129,21 @@ void PrintTable(const std::vector<Line>& lines, std::size_t num_words) {
   }
 }
 
-int Compare(const std::vector<std::string>& folders) {
-  std::vector<bench::ResultSummary> results;
+std::vector<bench::StoredResult> ReadResults(const std::vector<std::string>& folders) {
+  std::vector<bench::StoredResult> results;
   for (const std::string& folder : folders) {
-    if (std::filesystem::is_regular_file(folder)) {
+    if (fs::is_regular_file(folder)) {
       throw InputError("DIR", "'" + folder + "' is a file: name the folder that a run left");
     }
     results.push_back(bench::ReadResult(folder + "/result.json"));
   }
-  const std::vector<std::string> differences = FindDifferences(results);
-  const std::size_t num_shown = std::min(differences.size(), kMostDifferences);
+  return results;
+}
 
+void PrintResults(const std::vector<std::string>& folders,
+                  const std::vector<bench::StoredResult>& results,
+                  const std::vector<std::string>& differences) {
+  const std::size_t num_shown = std::min(differences.size(), kMostDifferences);
   Line heads = {"folder", "planner knows"}, units = {"", ""};
   std::vector<std::vector<std::string>> shown;
   for (std::size_t i = 0; i < num_shown; ++i) {
@@ -147,36 +162,92 @@ int Compare(const std::vector<std::string>& folders) {
   }
   std::vector<Line> lines = {heads, units};
   for (std::size_t n = 0; n < results.size(); ++n) {
-    const bench::ResultSummary& result = results[n];
-    Line& line = lines.emplace_back(Line{folders[n], result.knowledge});
+    const bench::StoredResult& result = results[n];
+    const bench::RunRow& row = result.row;
+    const bench::Outcome outcome = bench::OutcomeFromString(row.outcome).value();
+    Line& line = lines.emplace_back(Line{folders[n], row.subject.knowledge});
     for (const std::vector<std::string>& values : shown) line.push_back(OneLine(values[n]));
-    line.push_back(bench::Tell(result.outcome, result.touched, bench::Ending(result.metrics)));
-    line.push_back(bench::TellTrips(result.metrics));
+    line.push_back(bench::Tell(outcome, row.touched, bench::Ending(row.metrics)));
+    line.push_back(bench::TellTrips(row.metrics));
     line.push_back(Number(result, "first_contact_s", 1, "{:.2f}"));
     line.push_back(Number(result, "min_clearance_m", 1e3, "{:.0f}"));
     line.push_back(Number(result, "time_to_goal_s", 1, "{:.2f}"));
     line.push_back(Number(result, "gp_cost", 1, "{:.1f}"));
     line.push_back(Number(result, "jerk_rms", 1, "{:.0f}"));
-    line.push_back(FiniteText("{:.1f}", result.cycle_p50_ms));
+    line.push_back(FiniteText("{:.1f}", row.clock.cycle_p50_ms));
   }
   PrintTable(lines, num_words);
   for (std::size_t i = num_shown; i < differences.size(); ++i) {
     Print("{}{}{}", i == num_shown ? "also different: " : ", ", differences[i],
           i + 1 == differences.size() ? "\n" : "");
   }
+}
+
+// The trace beside a result.json, as it is found from the folder of the tables.
+std::string TraceFrom(const std::string& out, const std::string& folder) {
+  const fs::path trace = fs::absolute(folder) / "trace.h5";
+  std::error_code error;
+  if (!fs::exists(trace, error)) return "";
+  return trace.lexically_normal().lexically_proximate(fs::absolute(out).lexically_normal());
+}
+
+void WriteResults(const std::vector<std::string>& folders,
+                  const std::vector<bench::StoredResult>& results,
+                  std::vector<std::string> differences, const std::string& out) {
+  std::erase_if(differences, [](const std::string& key) { return key == "name" || key == "seed"; });
+  const auto is_another = [&](const bench::StoredResult& result) {
+    return result.row.subject.knowledge != results.front().row.subject.knowledge;
+  };
+  if (std::any_of(results.begin(), results.end(), is_another))
+    differences.emplace_back("knowledge");
+  std::vector<bench::SingleRun> runs;
+  for (std::size_t n = 0; n < results.size(); ++n) {
+    bench::SingleRun& run = runs.emplace_back();
+    run.row = results[n].row;
+    for (const std::string& key : differences) {
+      run.row.factors[key] = ParameterOf(results[n], key);
+    }
+    run.row.trace = TraceFrom(out, folders[n]);
+    run.scenario = results[n].scenario;
+    run.seed = results[n].seed;
+    run.machine = MachineIn(results[n].versions);
+  }
+  bench::RunFilesHead head = {
+      {{"title", "comparison"}, {"description", "Runs of " + Joined(folders)}}, {}};
+  const auto is_of_one_build = [&](const bench::StoredResult& result) {
+    return result.row.identity.build == results.front().row.identity.build;
+  };
+  if (std::all_of(results.begin(), results.end(), is_of_one_build)) {
+    head.facts["build_id"] = results.front().row.identity.build;
+    head.version = "sidestep " + results.front().versions.at("sidestep");
+  }
+  bench::WriteRunFiles(out, head, runs);
+  Print("written {0}/results.db, {0}/results.csv\n", out);
+}
+
+int Compare(const CompareOptions& options) {
+  const std::vector<bench::StoredResult> results = ReadResults(options.folders);
+  const std::vector<std::string> differences = FindDifferences(results);
+  std::string out;
+  if (!options.out.empty()) out = MakeOutFolder(options.out, {"results.db", "results.csv"});
+  PrintResults(options.folders, results, differences);
+  if (!out.empty()) WriteResults(options.folders, results, differences, out);
   return 0;
 }
 
 }  // namespace
 
 void AddCompareCommand(CommandLine& line) {
-  auto folders = std::make_shared<std::vector<std::string>>();
+  auto options = std::make_shared<CompareOptions>();
   CLI::App* const compare = line.app.add_subcommand(
       "compare",
       "Print the results of several runs as one table, with whatever differs "
       "between their scenarios");
-  compare->add_option("DIR", *folders, "Folders written by `sidestep run`")->required();
-  compare->callback([&line, folders] { line.exit_code = Compare(*folders); });
+  compare->add_option("DIR", options->folders, "Folders written by `sidestep run`")->required();
+  compare->add_option("--out", options->out,
+                      "Also write them into this folder as a sweep's results: results.db, which "
+                      "`sidestep report` reads, and results.csv");
+  compare->callback([&line, options] { line.exit_code = Compare(*options); });
 }
 
 }  // namespace sidestep::cli

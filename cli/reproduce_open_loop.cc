@@ -8,18 +8,22 @@
 
 #include "sidestep/bench/reproduce/open_loop_experiment.h"
 #include "sidestep/bench/reproduce/open_loop_report.h"
+#include "sidestep/bench/reproduce/open_loop_rows.h"
 #include "sidestep/bench/reproduce/open_loop_statistics.h"
 #include "sidestep/bench/reproduce/open_loop_statistics_text.h"
 #include "sidestep/bench/reproduce/open_loop_study.h"
 #include "sidestep/bench/reproduce/published_columns.h"
 #include "sidestep/bench/reproduce/published_table.h"
 #include "sidestep/bench/task_pool.h"
+#include "sidestep/cli/build_id.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/data_paths.h"
+#include "sidestep/cli/machine.h"
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/option_lists.h"
 #include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/reproduce.h"
+#include "sidestep/cli/versions.h"
 #include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/sdf/prediction/registry.h"
@@ -85,6 +89,21 @@ void PrintVerdicts(const bench::OpenLoopStudy& study) {
   }
 }
 
+void WriteRuns(const bench::OpenLoopExperiment& experiment, const bench::OpenLoopStudy& study,
+               const bench::OpenLoopStudyOptions& options, const std::string& out) {
+  std::vector<bench::SingleRun> runs = bench::OpenLoopRuns(experiment, study, options.predictor);
+  for (bench::SingleRun& run : runs) run.machine = Machine();
+  const bench::RunFilesHead head = {
+      {{"title", experiment.name},
+       {"description",
+        "The published open loop: seeds are pairs of start and goal, and who is "
+        "collision-free at the support states has reached the goal"},
+       {"scenarios", experiment.name},
+       {"build_id", BuildId()}},
+      VersionNumber()};
+  bench::WriteRunFiles(out, head, runs);
+}
+
 int Run(const std::string& name, const OpenLoopCommand& command) {
   const bench::OpenLoopExperiment experiment = MakeExperiment(name, command);
   const bench::OpenLoopStudyOptions options =
@@ -92,13 +111,15 @@ int Run(const std::string& name, const OpenLoopCommand& command) {
   // Read before the long work, so that a wrong path is found at once.
   const std::optional<bench::CsvTable> published_table =
       ReadPublished(command.published, {bench::kPairColumn, bench::kSpeedColumn});
-  const std::string out = MakeOutFolder(command.out.empty() ? "out/" + name : command.out,
-                                        {"rows.csv", "statistics.json", "figure.gp", "index.html"});
+  const std::string out = MakeOutFolder(
+      command.out.empty() ? "out/" + name : command.out,
+      {"rows.csv", "results.db", "results.csv", "statistics.json", "figure.gp", "index.html"});
 
   const bench::OpenLoopStudy study =
       bench::RunOpenLoopStudy(experiment, FindDataPaths().models, options, ReportRows);
   const bench::CsvTable table = bench::MakeOpenLoopTable(study);
   WriteFile(out + "/rows.csv", table.ToText());
+  WriteRuns(experiment, study, options, out);
   const std::vector<bench::MatchedOutcomes> outcomes = bench::ReadOutcomes(table);
   std::optional<bench::PublishedComparison> published;
   if (published_table) {
@@ -125,7 +146,7 @@ int Run(const std::string& name, const OpenLoopCommand& command) {
   if (published) {
     Print("\nagainst {}: {}", command.published, bench::Describe(published->table));
   }
-  Print("\nwritten: {}/rows.csv, {}/statistics.json\n", out, out);
+  Print("\nwritten: {0}/rows.csv, {0}/statistics.json, {0}/results.db, {0}/results.csv\n", out);
   const std::string svg = DrawInto(
       out, "figure",
       bench::MakeOpenLoopFigure(outcomes, published ? published->outcomes : decltype(outcomes)()));

@@ -1,12 +1,8 @@
 #include "sidestep/cli/sweep_runner.h"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -18,6 +14,7 @@
 #include "sidestep/cli/build_id.h"
 #include "sidestep/cli/case_row.h"
 #include "sidestep/cli/console.h"
+#include "sidestep/cli/machine.h"
 #include "sidestep/cli/out_folder.h"
 #include "sidestep/cli/provenance.h"
 #include "sidestep/cli/run_case.h"
@@ -41,27 +38,6 @@ constexpr std::uintmax_t kMaxPlanBytes = 1 << 20;
 // Of an axis, that are resolved before the work: evenly chosen, the first and the last among them.
 constexpr std::size_t kMostChecked = 50;
 constexpr std::uint64_t kMostTried = 1000;
-
-std::string CpuName() {
-  std::ifstream stream("/proc/cpuinfo");
-  for (std::string line; std::getline(stream, line);) {
-    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
-  }
-  return "";
-}
-
-// What may differ between machines that run one build.
-std::map<std::string, std::string> Machine() {
-  std::map<std::string, std::string> machine = Versions();
-  for (const char* const of_build : {"sidestep", "build_id", "build_type", "compiler"}) {
-    machine.erase(of_build);
-  }
-  std::array<char, 256> name{};
-  gethostname(name.data(), name.size() - 1);
-  machine["hostname"] = name.data();
-  machine["cpu"] = CpuName();
-  return machine;
-}
 
 }  // namespace
 

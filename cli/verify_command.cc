@@ -124,7 +124,11 @@ class Verification {
     recorded.factors["seed"] = recorded.values["seed"];
     bench::SqlStatement setup = database_.sql().Prepare(
         "SELECT setup FROM experiments WHERE id = " + recorded.values["experimentid"]);
-    if (setup.Step()) recorded.scenario = setup.Text(0);
+    if (!setup.Step() || setup.Text(0).empty()) {
+      throw InputError(options_.database,
+                       "does not say how run " + std::to_string(id) + " is made again");
+    }
+    recorded.scenario = setup.Text(0);
     return recorded;
   }
 
@@ -193,7 +197,9 @@ void AddVerifyCommand(CommandLine& line) {
   CLI::App* const verify = line.app.add_subcommand(
       "verify",
       "Run some of a database's runs again and compare every bit; exit code 1 if any differs");
-  verify->add_option("DB", options->database, "results.db, as `sidestep sweep` writes it")
+  verify
+      ->add_option("DB", options->database,
+                   "results.db, as `sidestep sweep` writes it, or `sidestep reproduce closed_loop`")
       ->required();
   verify->add_option("--sample", options->sample, "How many runs, drawn at random")
       ->check(NumberFrom(1, 1000000))

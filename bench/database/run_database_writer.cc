@@ -226,7 +226,7 @@ class RunDatabaseWriter::Tables {
     SqlStatement& facts = *facts_;
     facts.Reset();
     facts.Bind(1, run.id);
-    facts.Bind(2, run.key);
+    BindText(facts, 2, run.key);
     const bool was_resolved = !row.identity.build.empty();
     BindText(facts, 3, was_resolved ? RunId(row.identity) : "");
     BindText(facts, 4, row.identity.scenario);

@@ -25,9 +25,9 @@ struct RunTableHead {
 /// One run as it stands in a database.
 struct NumberedRun {
   std::int64_t id = 0;   ///< from 1, ascending from row to row
-  std::string key;       ///< of the sweep's plan
+  std::string key;       ///< of the sweep's plan; empty: no sweep has planned it
   std::string scenario;  ///< as the sweep names it
-  std::string setup;     ///< what it is loaded by
+  std::string setup;     ///< what it is loaded by; empty: nothing can run it again
   std::uint64_t seed = 0;
   int machine = 0;
   std::string combination_command;  ///< RunRow::command without its seed; empty: none

@@ -1,5 +1,7 @@
 #include "sidestep/bench/reproduce/closed_loop.h"
 
+#include "sidestep/core/number_text.h"
+
 namespace sidestep::bench {
 namespace {
 
@@ -21,18 +23,15 @@ void TimeStep(const scenarios::Scenario& scene, const GridSpec& grid, double mar
 
 }  // namespace
 
-scenarios::Scenario PublishedClosedLoop(scenarios::Scenario scenario, double speed_m_s,
-                                        int voxels_per_side) {
-  scenario.epsilon_m = 0.3;
-  scenario.planner_parameters["sigma_obs"] = "0.05";
-  scenario.planner_parameters["n_int"] = "0";
-  scenario.sensor.rate_hz = scenario.replan_rate_hz;
-  scenario.predictor = "two_frame";
-  scenario.grid.size = {voxels_per_side, voxels_per_side, voxels_per_side};
-  for (scenarios::MovingObstacle& obstacle : scenario.moving_obstacles) {
-    std::visit([&](auto& motion) { motion.speed_m_s = speed_m_s; }, obstacle.motion);
-  }
-  return scenario;
+Factors PublishedSettings(double speed_m_s) {
+  return {{"planner.epsilon_m", "0.3"}, {"planner.sigma_obs", "0.05"},
+          {"planner.n_int", "0"},       {"sensor.rate_hz", "10"},
+          {"predictor", "two_frame"},   {"speed_m_s", ShortestText(speed_m_s)}};
+}
+
+std::string CellsValue(int voxels_per_side) {
+  const std::string side = std::to_string(voxels_per_side);
+  return "[" + side + ", " + side + ", " + side + "]";
 }
 
 void TimeWholeRun(const scenarios::Scenario& scene, const GridSpec& grid, double margin_m,
@@ -42,8 +41,7 @@ void TimeWholeRun(const scenarios::Scenario& scene, const GridSpec& grid, double
   }
 }
 
-ClosedLoopStudy RunClosedLoopStudy(const scenarios::Scenario& scenario,
-                                   const robot::RobotModel& robot, const WorldFactory& make_world,
+ClosedLoopStudy RunClosedLoopStudy(const ClosedLoopLoader& load, const WorldFactory& make_world,
                                    const std::string& scenarios_dir,
                                    const ClosedLoopOptions& options,
                                    const std::function<void(const std::string&)>& on_part) {
@@ -51,13 +49,20 @@ ClosedLoopStudy RunClosedLoopStudy(const scenarios::Scenario& scenario,
     if (on_part) on_part(what);
   };
   ClosedLoopStudy study;
+  const auto load_with = [&](const Factors& varied) {
+    Factors all = PublishedSettings(options.speed_m_s);
+    all.insert(varied.begin(), varied.end());
+    return load(all);
+  };
   const auto run = [&](const std::string& knowledge, int voxels_per_side) {
     say(knowledge + ", " + std::to_string(voxels_per_side) + " voxels per side");
-    scenarios::Scenario published =
-        PublishedClosedLoop(scenario, options.speed_m_s, voxels_per_side);
-    published.knowledge = knowledge;
-    EpisodeResult result = RunEpisode(published, robot, make_world);
+    const Factors varied = {{"knowledge", knowledge}, {kCellsFactor, CellsValue(voxels_per_side)}};
+    const ClosedLoopCase published = load_with(varied);
+    EpisodeResult result = RunEpisode(published.scenario, published.robot, make_world);
     RequireWhole(result);
+    RunRow& row = study.rows.emplace_back(RowOf(result, published.scenario));
+    row.factors = varied;
+    row.identity = published.identity;
     return result;
   };
   study.update = run("execute_and_update", kMainGrid);
@@ -66,10 +71,12 @@ ClosedLoopStudy RunClosedLoopStudy(const scenarios::Scenario& scenario,
   for (const int voxels : options.voxels_per_side) {
     LoopRate& rate = study.rates.emplace_back();
     rate.voxels_per_side = voxels;
-    rate.cycle_s = run("prediction", voxels).times.at("cycle");
-    const scenarios::Scenario published = PublishedClosedLoop(scenario, options.speed_m_s, voxels);
+    rate.cycle_s =
+        (voxels == kMainGrid ? study.prediction : run("prediction", voxels)).times.at("cycle");
+    const ClosedLoopCase published = load_with({{kCellsFactor, CellsValue(voxels)}});
+    const scenarios::Scenario& scene = published.scenario;
     std::vector<double> init_s;
-    TimeStep(published, published.grid, published.epsilon_m + robot.largest_sphere_radius_m(),
+    TimeStep(scene, scene.grid, scene.epsilon_m + published.robot.largest_sphere_radius_m(),
              kStepOfRates, init_s, rate.predictions);
   }
   for (const std::string& name : FieldSceneNames()) {

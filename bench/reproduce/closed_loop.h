@@ -9,6 +9,8 @@
 #include "sidestep/bench/report/figure.h"
 #include "sidestep/bench/reproduce/csv_table.h"
 #include "sidestep/bench/reproduce/field_timer.h"
+#include "sidestep/bench/run_identity.h"
+#include "sidestep/bench/run_row.h"
 #include "sidestep/robot/robot_model.h"
 #include "sidestep/scenarios/scenario.h"
 
@@ -20,10 +22,21 @@ struct ClosedLoopOptions {
   std::vector<int> voxels_per_side = {64, 96, 128, 160, 192, 224, 256, 288, 320};
 };
 
-/// The scenario with the settings of the published closed loop: sigma, epsilon, no interpolated
-/// costs, an observation each cycle, a grid of as many cells on each side.
-scenarios::Scenario PublishedClosedLoop(scenarios::Scenario scenario, double speed_m_s,
-                                        int voxels_per_side);
+/// The settings of the published closed loop, as factors of a run (cli/run_case.h): sigma, epsilon,
+/// no interpolated costs, an observation each cycle, and the speed of what moves.
+Factors PublishedSettings(double speed_m_s);
+/// The factor that is the size of the grid, and its value for as many cells on each side.
+inline constexpr const char* kCellsFactor = "workspace.cells";
+std::string CellsValue(int voxels_per_side);
+
+/// A run of the study, ready to be made.
+struct ClosedLoopCase {
+  scenarios::Scenario scenario;  ///< resolved
+  robot::RobotModel robot;
+  RunIdentity identity;
+};
+/// Makes one of its factors: the published settings, the grid and the kind of knowledge.
+using ClosedLoopLoader = std::function<ClosedLoopCase(const Factors&)>;
 
 /// How fast the loop turns and a field is predicted, in one grid. One core, CPU time.
 struct LoopRate {
@@ -41,15 +54,16 @@ struct WholeRunTimes {
 
 struct ClosedLoopStudy {
   EpisodeResult update, prediction;  ///< at the speed, 96 voxels a side
+  /// Of all runs, those two first; what is fixed is none of their factors, and their traces and
+  /// commands are not filled.
+  std::vector<RunRow> rows;
   std::vector<LoopRate> rates;
   WholeRunTimes whole_run;
 };
 
-/// @param scenario to be run with the published settings; its task must be resolved.
 /// @param scenarios_dir the folder of the field scenes.
 /// @param on_part called with what is about to be done.
-ClosedLoopStudy RunClosedLoopStudy(const scenarios::Scenario& scenario,
-                                   const robot::RobotModel& robot, const WorldFactory& make_world,
+ClosedLoopStudy RunClosedLoopStudy(const ClosedLoopLoader& load, const WorldFactory& make_world,
                                    const std::string& scenarios_dir,
                                    const ClosedLoopOptions& options,
                                    const std::function<void(const std::string&)>& on_part = {});

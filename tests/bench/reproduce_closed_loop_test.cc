@@ -5,7 +5,6 @@
 
 #include <array>
 #include <string>
-#include <variant>
 
 #include "sidestep/bench/reproduce/closed_loop.h"
 #include "sidestep/bench/reproduce/closed_loop_report.h"
@@ -18,16 +17,18 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 TEST(ClosedLoop, TakesThePublishedSettings) {
-  const scenarios::Scenario walkway =
-      scenarios::LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/hsr_walkway.yaml");
-  const scenarios::Scenario scenario = PublishedClosedLoop(walkway, 1.2, 64);
+  Factors settings = PublishedSettings(1.2);
+  EXPECT_EQ(settings.extract("speed_m_s").mapped(), "1.2") << "is no key of a scenario";
+  settings[kCellsFactor] = CellsValue(64);
+  const scenarios::Scenario scenario =
+      scenarios::LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/hsr_walkway.yaml", settings);
   EXPECT_EQ(scenario.epsilon_m, 0.3);
   EXPECT_EQ(scenario.planner_parameters.at("sigma_obs"), "0.05");
   EXPECT_EQ(scenario.planner_parameters.at("n_int"), "0");
+  EXPECT_EQ(scenario.sensor.rate_hz, scenario.replan_rate_hz) << "an observation each cycle";
+  EXPECT_EQ(scenario.predictor, "two_frame");
   EXPECT_EQ(scenario.grid.size, (std::array<int, 3>{64, 64, 64}));
   EXPECT_EQ(scenario.grid.cell_m, 0.04);
-  EXPECT_EQ(std::get<scenarios::LinearMotion>(scenario.moving_obstacles.at(0).motion).speed_m_s,
-            1.2);
 }
 
 TEST(ClosedLoop, PredictsAllRemainingStepsAtEachStep) {

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "sidestep/bench/reproduce/csv_table.h"
+#include "sidestep/bench/reproduce/open_loop_rows.h"
 #include "sidestep/bench/reproduce/published_table.h"
 #include "sidestep/core/input_error.h"
 #include "tests/support/temporary_folder.h"
@@ -113,6 +114,30 @@ TEST(TableComparison, RefusesATableWithoutItsKeysOrWithARowTwice) {
                            "pair,speed_m_per_s\n1,\n", "pair,speed_m_per_s\n1,0.1\n1,0.1\n"}) {
     EXPECT_THROW(CompareTables(ours, Parse(text), "published.csv"), InputError) << text;
   }
+}
+
+TEST(OpenLoopRuns, AreARunOfEachKnowledgeWithPairsAsSeeds) {
+  OpenLoopStudy study;
+  for (const int pair : {1, 4}) {
+    OpenLoopRow& row = study.rows.emplace_back();
+    row.pair = pair;
+    row.speed_m_s = 1.4;
+    row.cases[sdf::Knowledge::kStatic].result.colliding_states = 3;
+    OpenLoopRow::Case& free = row.cases[sdf::Knowledge::kPrediction];
+    free.result.gp_cost = 9.5;
+    free.clearance = {0.02, 0.03, 0.025};
+  }
+  const OpenLoopExperiment experiment =
+      MakeOpenLoopExperiment("panda_hsr", SIDESTEP_SOURCE_DIR "/scenarios");
+  const std::vector<SingleRun> runs = OpenLoopRuns(experiment, study, "two_frame");
+  ASSERT_EQ(runs.size(), 4u);
+  EXPECT_EQ(runs[0].row.outcome, "collision");
+  EXPECT_EQ(runs[3].seed, 4u);
+  EXPECT_EQ(runs[3].row.outcome, "goal");
+  EXPECT_EQ(runs[3].row.factors, (Factors{{"knowledge", "prediction"}, {"speed_m_s", "1.4"}}));
+  EXPECT_EQ(runs[3].row.metrics.at("gp_cost"), 9.5);
+  EXPECT_EQ(runs[3].row.metrics.at("min_clearance_m"), 0.02);
+  EXPECT_EQ(runs[3].row.subject.robot, "panda");
 }
 
 }  // namespace

@@ -48,14 +48,43 @@ class ResultFile : public ::testing::Test {
   }
 };
 
-TEST_F(ResultFile, IsReadBackAsItWasWritten) {
-  WriteFile(path_, ResultJson(SomeResult(), SomeScenario(), kIdentity, {{"mujoco", "2.2.2"}}));
-  const ResultSummary summary = ReadResult(path_);
-  EXPECT_EQ(summary.outcome, Outcome::kCollision);
-  EXPECT_EQ(summary.knowledge, "prediction");
-  EXPECT_EQ(summary.metrics.at("gp_cost"), 1.5);
-  EXPECT_TRUE(std::isnan(summary.metrics.at("time_to_goal_s")));
-  EXPECT_DOUBLE_EQ(summary.cycle_p50_ms, 2);
+TEST_F(ResultFile, IsReadBackAsTheRowThatItIs) {
+  EpisodeResult result = SomeResult();
+  result.cycles_over_charge = 3;
+  result.late_plans = 2;
+  scenarios::Scenario scenario = SomeScenario();
+  scenario.seed = 12;
+  scenario.drawn = {{"delay_s", 0.25}};
+  WriteFile(path_, ResultJson(result, scenario, kIdentity, {{"build_id", "build"}}));
+  const StoredResult stored = ReadResult(path_);
+  EXPECT_EQ(stored.scenario, "hsr_walkway");
+  EXPECT_EQ(stored.seed, 12u);
+  EXPECT_EQ(stored.versions.at("build_id"), "build");
+  const RunRow row = RowOf(result, scenario);
+  EXPECT_EQ(stored.row.outcome, "collision");
+  EXPECT_EQ(stored.row.drawn, scenario.drawn);
+  EXPECT_EQ(RunId(stored.row.identity), RunId(kIdentity));
+  EXPECT_EQ(stored.row.subject.robot, row.subject.robot);
+  EXPECT_EQ(stored.row.subject.planner, row.subject.planner);
+  EXPECT_EQ(stored.row.subject.knowledge, "prediction");
+  EXPECT_EQ(stored.row.subject.predictor, row.subject.predictor);
+  EXPECT_EQ(stored.row.subject.charged_latency_s, 0.1);
+  EXPECT_EQ(stored.row.metrics.at("gp_cost"), 1.5);
+  EXPECT_TRUE(std::isnan(stored.row.metrics.at("time_to_goal_s")));
+  EXPECT_EQ(stored.row.metrics.size(), row.metrics.size());
+  EXPECT_DOUBLE_EQ(stored.row.clock.episode_s, 3);
+  EXPECT_DOUBLE_EQ(stored.row.clock.cycle_p50_ms, 2);
+  EXPECT_DOUBLE_EQ(stored.row.clock.cycle_max_ms, 10);
+  EXPECT_EQ(stored.row.clock.cycles_over_charge, 3);
+  EXPECT_EQ(stored.row.clock.late_plans, 2);
+}
+
+TEST_F(ResultFile, OfAProgramThatToldLessIsReadToo) {
+  auto json = nlohmann::json::parse(ResultJson(SomeResult(), SomeScenario(), kIdentity, {}));
+  json.erase("charged_latency_s");
+  json["wall_clock"]["cycle_cpu"]["cycle"].erase("max_ms");
+  WriteFile(path_, json.dump());
+  EXPECT_TRUE(std::isnan(ReadResult(path_).row.subject.charged_latency_s));
 }
 
 TEST_F(ResultFile, OfAnAbortedRunIsReadBackThoughItHadNoPlanningCycle) {
@@ -64,9 +93,10 @@ TEST_F(ResultFile, OfAnAbortedRunIsReadBackThoughItHadNoPlanningCycle) {
   result.reason = "the robot's \"power\" failed";
   result.times["cycle"].clear();
   WriteFile(path_, ResultJson(result, SomeScenario(), kIdentity, {}));
-  const ResultSummary summary = ReadResult(path_);
-  EXPECT_EQ(summary.outcome, Outcome::kAborted);
-  EXPECT_TRUE(std::isnan(summary.cycle_p50_ms));
+  const RunRow row = ReadResult(path_).row;
+  EXPECT_EQ(row.outcome, "aborted");
+  EXPECT_EQ(row.error, result.reason);
+  EXPECT_TRUE(std::isnan(row.clock.cycle_p50_ms));
   const auto json = nlohmann::json::parse(ResultJson(result, SomeScenario(), kIdentity, {}));
   EXPECT_EQ(json["reason"], result.reason);
   EXPECT_TRUE(

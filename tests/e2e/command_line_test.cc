@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "sidestep/bench/database/run_database.h"
 #include "sidestep/core/csv.h"
 #include "tests/support/bytes_of.h"
 #include "tests/support/subprocess.h"
@@ -659,6 +660,36 @@ TEST(Compare, TellsRunsApartByFolderAndByWhatDiffers) {
   EXPECT_THAT(finished.out, HasSubstr("  outcome "));
   EXPECT_THAT(finished.out, AllOf(HasSubstr("epsilon_m"), HasSubstr(compare[1]),
                                   HasSubstr("  0.1512  "), ::testing::Not(HasSubstr("seed"))));
+}
+
+TEST(Compare, LeavesTheRunsAsASweepDoesForAReport) {
+  const TemporaryFolder folder;
+  std::vector<std::string> compare = {"compare", "--out", folder.path() / "both"};
+  for (const std::string knowledge : {"static", "prediction"}) {
+    compare.push_back(folder.path() / knowledge);
+    const Finished run =
+        Sidestep({"run", "hsr_walkway", "--set", "planner.name=straight_line", "--set",
+                  "horizon.duration_s=1", "--knowledge", knowledge, "--out", compare.back()});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+  }
+  const Finished finished = Sidestep(compare);
+  EXPECT_EQ(finished.exit_code, 0) << finished.err;
+  EXPECT_THAT(finished.out, AllOf(HasSubstr("planner knows"), HasSubstr("both/results.db")));
+  const bench::RunDatabase database(folder.path() / "both/results.db");
+  ASSERT_EQ(database.factors().size(), 1u);
+  EXPECT_EQ(database.factors()[0].name, "knowledge");
+  auto row = database.Select("outcome, knowledge, trace, command");
+  ASSERT_TRUE(row.Step());
+  const auto result = nlohmann::json::parse(BytesOf(folder.path() / "static/result.json"));
+  EXPECT_EQ(row.Text(0), result.at("outcome"));
+  EXPECT_EQ(row.Text(1), "static");
+  EXPECT_EQ(row.Text(2), "../static/trace.h5");
+  EXPECT_TRUE(row.IsNull(3));
+  const Finished report = Sidestep(
+      {"report", folder.path() / "both/results.db", "--out", folder.path() / "report.html"});
+  EXPECT_EQ(report.exit_code, 0) << report.err;
+  EXPECT_THAT(report.out, HasSubstr("n = 1 pairs"));
+  EXPECT_THAT(BytesOf(folder.path() / "report.html"), HasSubstr("replay in 3-D"));
 }
 
 TEST(List, ShowsWhatCanBeNamed) {

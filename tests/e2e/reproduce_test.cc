@@ -133,6 +133,38 @@ TEST(Reproduce, TimesPredictedFieldsInTheScenesAndSizesAskedFor) {
   EXPECT_THAT(ReadFile(folder + "/index.html"), HasSubstr("data:image/svg+xml"));
 }
 
+TEST(Reproduce, LeavesItsOpenLoopAsRunsThatAReportIsMadeOf) {
+  const TemporaryFolder temporary;
+  const std::string folder = temporary.path();
+  const Finished finished =
+      Reproduce({"panda_hsr", "--pairs", "1-3", "--speeds", "1.4", "--case",
+                 "execute_and_update,prediction", "-j", "1", "--out", folder});
+  EXPECT_EQ(finished.exit_code, 0) << finished.err;
+  const Finished report = RunProgram(
+      {SIDESTEP_PROGRAM, "report", folder + "/results.db", "--out", folder + "/report.html"});
+  EXPECT_EQ(report.exit_code, 0) << report.err;
+  EXPECT_THAT(report.out, HasSubstr("n = 3 pairs"));
+  const Finished verify = RunProgram({SIDESTEP_PROGRAM, "verify", folder + "/results.db"});
+  EXPECT_EQ(verify.exit_code, 2);
+  EXPECT_THAT(verify.err, HasSubstr("does not say how run 1 is made again"));
+}
+
+TEST(Reproduce, LeavesTheRunsOfItsClosedLoopToBeMadeAgain) {
+  const TemporaryFolder temporary;
+  const std::string folder = temporary.path();
+  const Finished finished = Reproduce({"closed_loop", "--sizes", "32,96", "--out", folder});
+  EXPECT_EQ(finished.exit_code, 0) << finished.err;
+  const Finished verify = RunProgram({SIDESTEP_PROGRAM, "verify", folder + "/results.db"});
+  EXPECT_EQ(verify.exit_code, 0) << verify.out << verify.err;
+  EXPECT_THAT(verify.out, HasSubstr("3 of 3 runs came out the same, bit for bit"));
+  EXPECT_THAT(ReadFile(folder + "/results.csv"), HasSubstr("prediction.h5"));
+  const Finished report = RunProgram(
+      {SIDESTEP_PROGRAM, "report", folder + "/results.db", "--out", folder + "/report.html"});
+  EXPECT_EQ(report.exit_code, 0) << report.err;
+  EXPECT_THAT(report.out, HasSubstr("With knowledge prediction the robot reached its goal and "
+                                    "touched nothing in 1 of 1 runs"));
+}
+
 struct Mistake {
   const char* name;
   std::vector<std::string> arguments;
