@@ -15,8 +15,9 @@ namespace sidestep::bench {
 /// A row says in how many pairs the goal was reached, and medians: of the least clearance of all,
 /// of time and jerk where the goal was reached. Beside each stands the difference from the first
 /// value, this one minus that one: of the share of goals, and the median difference within pairs
-/// (of time and jerk: of pairs that both reached the goal). Intervals of 95 % come from a bootstrap
-/// over seeds, since episodes of one seed resemble each other.
+/// (of time and jerk: of pairs that both reached the goal). Intervals of 95 % are those of the
+/// report: of shares bench/statistics/paired_rates.h, of medians bench/statistics/paired_medians.h,
+/// with seeds as clusters, since episodes of one seed resemble each other.
 /// Empty where the factor across does not vary.
 std::string PairedTable(const std::vector<RunRow>& rows, const TableAxes& axes);
 

@@ -52,7 +52,9 @@ std::string PairedText(const std::vector<RunRow>& rows, const TableAxes& axes) {
   const std::string table = PairedTable(rows, axes);
   if (table.empty()) return "";
   return "\nThe same episodes with each value of " + TableCell(axes.across) +
-         ", and the difference from the first of them (intervals of 95 %, over seeds): goals; the "
+         ", and the difference from the first of them (intervals of 95 %, as in `sidestep "
+         "report`): "
+         "goals; the "
          "median of the least clearance of all; of time and jerk where the goal was reached. "
          "Differences are medians within pairs.\n\n" +
          table;

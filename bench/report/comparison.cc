@@ -2,22 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 
 #include "sidestep/bench/outcome.h"
 #include "sidestep/bench/run_row.h"
-#include "sidestep/bench/statistics.h"
-#include "sidestep/bench/statistics/resampling.h"
 
 namespace sidestep::bench {
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr int kMostDraws = 2000, kFewestDraws = 200;
-constexpr double kMostDrawnPairs = 2e7;
-constexpr std::uint64_t kSeed = 1;
 
 // What a pair shares: the levels of all other factors, and the seed.
 std::vector<std::int64_t> AllElse(const RunTable& runs, std::size_t run, int factor) {
@@ -26,50 +18,6 @@ std::vector<std::int64_t> AllElse(const RunTable& runs, std::size_t run, int fac
     if (static_cast<int>(f) != factor) key.push_back(runs.levels[f][run]);
   }
   return key;
-}
-
-double Median(std::vector<double> values) { return Quantile(std::move(values), 0.5); }
-
-// The middle of many, by selection.
-double FastMedian(std::vector<double>& values) {
-  if (values.empty()) return kNone;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
-}
-
-MetricComparison CompareMetric(const std::vector<double>& of, const std::vector<double>& with,
-                               const std::vector<int>& cluster) {
-  MetricComparison comparison;
-  comparison.num_pairs = static_cast<int>(of.size());
-  comparison.of = Median(of);
-  comparison.with = Median(with);
-  std::vector<double> differences;
-  std::map<int, std::vector<double>> by_cluster;
-  for (std::size_t i = 0; i < of.size(); ++i) {
-    differences.push_back(of[i] - with[i]);
-    by_cluster[cluster[i]].push_back(differences.back());
-  }
-  comparison.difference = Median(differences);
-  comparison.interval = {kNone, kNone};
-  if (by_cluster.size() < 2) return comparison;
-  std::vector<const std::vector<double>*> clusters;
-  for (const auto& [name, values] : by_cluster) clusters.push_back(&values);
-  const auto median = [&](const std::vector<int>& sample) {
-    std::vector<double> drawn;
-    drawn.reserve(differences.size());
-    for (const int c : sample) {
-      const std::vector<double>& values = *clusters[static_cast<std::size_t>(c)];
-      drawn.insert(drawn.end(), values.begin(), values.end());
-    }
-    return FastMedian(drawn);
-  };
-  const int draws = std::clamp(static_cast<int>(kMostDrawnPairs / static_cast<double>(of.size())),
-                               kFewestDraws, kMostDraws);
-  comparison.interval =
-      BootstrapOverClusters(static_cast<int>(clusters.size()), median, draws, kSeed);
-  return comparison;
 }
 
 }  // namespace
@@ -122,19 +70,15 @@ Comparison Compare(const RunTable& runs, const Question& question,
   for (const ComparedMetric& metric : metrics) {
     const auto column = runs.numbers.find(metric.column);
     if (column == runs.numbers.end()) continue;
-    std::vector<double> of, with;
-    std::vector<int> cluster;
+    std::vector<PairedNumber> numbers;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const double a = column->second[pairs[i].first], b = column->second[pairs[i].second];
       if (!std::isfinite(a) || !std::isfinite(b)) continue;
       if (metric.goals_only && !(outcomes[i].first && outcomes[i].second)) continue;
-      of.push_back(a);
-      with.push_back(b);
-      cluster.push_back(outcomes[i].cluster);
+      numbers.push_back({outcomes[i].cluster, a, b});
     }
-    if (of.empty()) continue;
-    comparison.metrics.push_back(CompareMetric(of, with, cluster));
-    comparison.metrics.back().column = metric.column;
+    if (numbers.empty()) continue;
+    comparison.metrics.push_back({ComparePairedMedians(numbers), metric.column});
   }
   return comparison;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sidestep/bench/report/run_table.h"
+#include "sidestep/bench/statistics/paired_medians.h"
 #include "sidestep/bench/statistics/paired_rates.h"
 
 namespace sidestep::bench {
@@ -16,13 +17,9 @@ struct Question {
   int of = 0, with = 0;
 };
 
-/// A number of runs under two treatments.
-struct MetricComparison {
+/// A number of runs at both levels: `of` comes first.
+struct MetricComparison : PairedMedians {
   std::string column;
-  int num_pairs = 0;        ///< of pairs that both have the number
-  double of = 0, with = 0;  ///< medians
-  double difference = 0;    ///< the median one, of minus with
-  Interval interval;        ///< of that, 95 %, over clusters; NaN where it is unknown
 };
 
 /// The same cases under two levels of a factor.

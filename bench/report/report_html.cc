@@ -167,8 +167,8 @@ std::string MetricsTableHtml(const RunTable& runs, const Comparison& comparison)
       difference += " (" + Signed(told.scale * metric.interval.low) + " to " +
                     Signed(told.scale * metric.interval.high) + ")";
     }
-    rows.push_back({Escaped(told.label), Number(told.scale * metric.of),
-                    Number(told.scale * metric.with), difference,
+    rows.push_back({Escaped(told.label), Number(told.scale * metric.first),
+                    Number(told.scale * metric.second), difference,
                     std::to_string(metric.num_pairs)});
   }
   return TableHtml(rows);

@@ -1,5 +1,6 @@
 #include "sidestep/bench/summary_page.h"
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,6 +13,8 @@
 #include "sidestep/bench/paired_table.h"
 #include "sidestep/bench/resolve.h"
 #include "sidestep/bench/run_row.h"
+#include "sidestep/bench/statistics/paired_medians.h"
+#include "sidestep/bench/statistics/paired_rates.h"
 
 namespace sidestep::bench {
 namespace {
@@ -113,6 +116,29 @@ TEST(PairedTable, DrawsSeedsAndNotEpisodes) {
     return table.substr(at, table.find(')', at) - at);
   };
   EXPECT_EQ(interval("| all | fast |"), interval("| stop | fast |"));
+}
+
+TEST(PairedTable, HasTheIntervalsOfTheReport) {
+  std::vector<RunRow> rows;
+  std::vector<PairedOutcome> outcomes;
+  std::vector<PairedNumber> clearances;
+  for (int seed = 1; seed <= 12; ++seed) {
+    const bool slow = seed % 4 != 0, fast = seed % 3 != 0;
+    const double slow_m = 0.01 * (seed % 5), fast_m = 0.013 * (seed % 7);
+    rows.push_back(Episode("slow", seed, slow, slow_m, 3));
+    rows.push_back(Episode("fast", seed, fast, fast_m, 3));
+    outcomes.push_back({seed, fast, slow});
+    clearances.push_back({seed, 1e3 * fast_m, 1e3 * slow_m});
+  }
+  const PairedRates rates = ComparePairedRates(outcomes);
+  const PairedMedians medians = ComparePairedMedians(clearances);
+  EXPECT_THAT(PairedTable(rows, {"behaviour", "pace"}),
+              HasSubstr(fmt::format("| stop | fast | 12 | 66.7 | {:+.1f} ({:.1f} to {:.1f}) | ",
+                                    100 * rates.difference, 100 * rates.interval.low,
+                                    100 * rates.interval.high)));
+  EXPECT_THAT(PairedTable(rows, {"behaviour", "pace"}),
+              HasSubstr(fmt::format(" | {:+.1f} ({:.1f} to {:.1f}) | ", medians.difference,
+                                    medians.interval.low, medians.interval.high)));
 }
 
 TEST(PairedTable, IsEmptyWhereNothingVariesAcross) {
