@@ -14,7 +14,7 @@ bench::RecordedRun RunCase(const std::string& scenario, const bench::Factors& fa
   try {
     problem = LoadCase(scenario, factors, paths, robots);
   } catch (const InputError& error) {
-    return {bench::FailedRow({}, error.what()), {}};
+    return {bench::FailedRow({}, FaultByFactor(error.what())), {}};
   }
   bench::RecordedRun run;
   if (IsSearch(factors)) {

@@ -21,6 +21,15 @@ double SpeedOf(const std::string& text) {
 
 }  // namespace
 
+std::string FaultByFactor(const std::string& fault) {
+  for (const std::string flag : {"--set ", "--speed: ", "--"}) {
+    if (!fault.starts_with(flag)) continue;
+    return (flag == "--speed: " ? std::string(kSpeedFactor) + ": " : "") +
+           fault.substr(flag.size());
+  }
+  return fault;
+}
+
 bool IsSearch(const bench::Factors& factors) {
   const auto knowledge = factors.find("knowledge");
   return knowledge != factors.end() && knowledge->second == kSearch;

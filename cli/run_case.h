@@ -21,6 +21,10 @@ inline constexpr const char* kSpeedFactor = "speed_m_s";
 Problem LoadCase(const std::string& scenario, const bench::Factors& factors, const DataPaths& paths,
                  CheckedRobots* robots);
 
+/// What LoadCase complains of, by the names of factors instead of the flags of `sidestep run`:
+/// `knowledge: ...`, `planner.epsilon_m: ...`. Anything else as it is.
+std::string FaultByFactor(const std::string& fault);
+
 bool IsSearch(const bench::Factors& factors);
 
 /// What runs one case alone, to the same trace; empty for a search.

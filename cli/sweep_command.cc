@@ -140,6 +140,13 @@ bool TellRows(const bench::SweepPlan& plan, const bench::SweepRows& rows) {
   return rows.num_done() == plan.num_runs() && rows.contradicted().empty();
 }
 
+// That the runs are no longer those that would be made. @return whether they still are.
+bool TellChange(const SweepRunner& runner) {
+  const std::string change = runner.WhatChanged();
+  if (!change.empty()) PrintError("{}\n", change);
+  return change.empty();
+}
+
 void PrintOutcomes(const bench::SweepRows& rows) {
   for (const auto& [outcome, count] : rows.outcomes()) Print("{:<15} {}\n", outcome, count);
 }
@@ -147,6 +154,7 @@ void PrintOutcomes(const bench::SweepRows& rows) {
 int Status(const SweepOptions& options) {
   const Asked asked(options);
   const bench::SweepRows rows = asked.runner().Rows();
+  const bool is_same = TellChange(asked.runner());
   const bool is_whole = TellRows(asked.plan(), rows);
   Print("{} of {} runs are finished, {} are missing\n", rows.num_done(), asked.plan().num_runs(),
         asked.plan().num_runs() - rows.num_done());
@@ -157,7 +165,7 @@ int Status(const SweepOptions& options) {
   for (const auto& [state, count] : QueuedTasks(asked.runner().out())) {
     Print("in Slurm's queue: {} {}\n", count, state);
   }
-  return is_whole ? 0 : 1;
+  return is_same && is_whole ? 0 : 1;
 }
 
 int SubmitShards(const SweepOptions& options) {
@@ -171,8 +179,7 @@ int SubmitShards(const SweepOptions& options) {
   return 0;
 }
 
-int Merge(const SweepOptions& options) {
-  const Asked asked(options);
+int MergeOf(const Asked& asked, const SweepOptions& options) {
   const bench::SweepRows rows = asked.runner().Rows();
   const bool is_whole = TellRows(asked.plan(), rows);
   asked.runner().Merge(rows);
@@ -185,6 +192,13 @@ int Merge(const SweepOptions& options) {
   return is_whole ? 0 : 1;
 }
 
+int Merge(const SweepOptions& options) {
+  const Asked asked(options);
+  const bool is_same = TellChange(asked.runner());
+  const int exit_code = MergeOf(asked, options);
+  return is_same ? exit_code : 1;
+}
+
 int Run(const SweepOptions& options) {
   const bench::ShardName shard = ParseShard(options.shard);
   const Asked asked(options);
@@ -194,7 +208,7 @@ int Run(const SweepOptions& options) {
     Print("shard {}/{} is finished\n", shard.number, shard.of);
     return 0;
   }
-  return Merge(options);
+  return MergeOf(asked, options);
 }
 
 CLI::App* AddSub(CLI::App& sweep, const char* name, const char* what,

@@ -1,7 +1,6 @@
 #include "sidestep/cli/sweep_runner.h"
 
 #include <algorithm>
-#include <exception>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -19,6 +18,7 @@
 #include "sidestep/cli/provenance.h"
 #include "sidestep/cli/run_case.h"
 #include "sidestep/cli/stop_signals.h"
+#include "sidestep/cli/sweep_fault.h"
 #include "sidestep/cli/sweep_progress.h"
 #include "sidestep/cli/versions.h"
 #include "sidestep/core/atomic_file.h"
@@ -39,18 +39,28 @@ constexpr std::uintmax_t kMaxPlanBytes = 1 << 20;
 constexpr std::size_t kMostChecked = 50;
 constexpr std::uint64_t kMostTried = 1000;
 
+// Why rows of one maker are none of the other.
+std::string Difference(const bench::ShardMaker& before, const bench::ShardMaker& now) {
+  if (before.build != now.build) return "holds runs of another build of sidestep";
+  return "holds runs of other scenarios, settings or robots (a file of theirs has changed, or "
+         "`set` or `variations`)";
+}
+
 }  // namespace
 
-SweepRunner::SweepRunner(const bench::SweepPlan& plan, std::string folder, std::string out,
+SweepRunner::SweepRunner(const bench::SweepPlan& plan, const std::string& folder, std::string out,
                          DataPaths paths)
-    : plan_(plan), folder_(std::move(folder)), out_(std::move(out)), paths_(std::move(paths)) {}
+    : plan_(plan),
+      folder_((fs::current_path() / folder).lexically_normal().string()),
+      out_(std::move(out)),
+      paths_(std::move(paths)) {}
 
 std::string SweepRunner::ScenarioOf(const bench::PlannedRun& run) const {
   const std::string& name = run.scenario;
   const bool is_path = name.find('/') != std::string::npos || name.ends_with(".yaml");
-  if (!is_path || fs::path(name).is_absolute()) return name;
-  const std::string path = (fs::path(folder_) / name).lexically_normal().string();
-  return path.find('/') == std::string::npos ? "./" + path : path;  // or it would be a name
+  if (!is_path) return name;
+  // From the root, so that the results can be run again from anywhere.
+  return (fs::path(folder_) / name).lexically_normal().string();
 }
 
 bench::Factors SweepRunner::AllFactorsOf(const bench::PlannedRun& run) const {
@@ -103,7 +113,7 @@ SweepRunner::Checked SweepRunner::Check() const {
   }
   Checked checked;
   std::set<std::string> models;
-  std::exception_ptr first_error;
+  std::optional<InputError> first_error;
   const auto check = [&](const bench::PlannedRun& run) {
     ++checked.num_checked;
     try {
@@ -114,8 +124,9 @@ SweepRunner::Checked SweepRunner::Check() const {
           checked.seed_matters || !scenarios::WhatTheSeedChanges(problem.scenario).empty();
       if (checked.description.empty()) checked.description = problem.scenario.description;
       return true;
-    } catch (const InputError& error) {
-      if (!first_error) first_error = std::current_exception();
+    } catch (const InputError& fault) {
+      const InputError error = FaultInSweep(sweep, fault);
+      if (!first_error) first_error = error;
       std::string what = run.scenario;
       for (const auto& [factor, value] : run.factors) what += ", " + factor + " " + value;
       checked.refused.push_back(what + ": " + error.what());
@@ -129,7 +140,7 @@ SweepRunner::Checked SweepRunner::Check() const {
        ++c) {
     can_be_run = check(plan_.At(plan_.FirstOf(c)));
   }
-  if (!can_be_run) std::rethrow_exception(first_error);
+  if (!can_be_run) throw *first_error;
   // Without the values that are varied, so that there may be others some other time.
   Fingerprint inputs;
   for (const std::string& scenario : sweep.scenarios) {
@@ -152,7 +163,9 @@ bench::RunIdentity SweepRunner::IdentityOf(const bench::PlannedRun& run) const {
 
 void SweepRunner::CheckSeeds(const Checked& checked) const {
   if (plan_.sweep().seeds.size() < 2 || checked.seed_matters) return;
-  throw InputError(plan_.sweep().name + ": seeds",
+  const bench::Sweep& sweep = plan_.sweep();
+  const auto line = sweep.lines.find("seeds");
+  throw InputError(sweep.file, line == sweep.lines.end() ? 1 : line->second, "seeds",
                    "a seed changes nothing: the scenario has no variations, nothing walks at "
                    "random, and its sensor is perfect");
 }
@@ -164,6 +177,16 @@ bench::ShardMaker SweepRunner::Maker() const {
     throw InputError(path, "is no plan of this version of sidestep");
   }
   return {plan.value("build", ""), plan.value("inputs", "")};
+}
+
+std::string SweepRunner::WhatChanged() const {
+  const bench::ShardMaker before = Maker();
+  try {
+    const bench::ShardMaker now{BuildId(), Check().inputs};
+    return before == now ? "" : out_ + ": " + Difference(before, now);
+  } catch (const InputError& error) {
+    return error.what();
+  }
 }
 
 bench::ShardMaker SweepRunner::Prepare(bool again) const {
@@ -178,14 +201,9 @@ bench::ShardMaker SweepRunner::Prepare(bool again) const {
     const bench::ShardMaker before = Maker();
     if (before == maker) return maker;
     if (!again) {
-      throw InputError(
-          out_,
-          std::string("holds runs of ") +
-              (before.build != maker.build ? "another build of sidestep"
-                                           : "other scenarios, settings or robots (a file of "
-                                             "theirs has changed, or `set` or `variations`)") +
-              ": take another folder by --out, or let --again run them again (what is there "
-              "stays in the shards, and counts no more)");
+      throw InputError(out_, Difference(before, maker) +
+                                 ": take another folder by --out, or let --again run them again "
+                                 "(what is there stays in the shards, and counts no more)");
     }
   }
   WriteFile(out_ + "/plan.json", bench::JsonText({{"format", kPlanFormat},
@@ -197,8 +215,8 @@ bench::ShardMaker SweepRunner::Prepare(bool again) const {
 
 bench::RunRow SweepRunner::RunOne(std::uint64_t index) const {
   const bench::PlannedRun run = plan_.At(index);
-  bench::RecordedRun done =
-      RunCase(ScenarioOf(run), AllFactorsOf(run), plan_.sweep().search, paths_, &robots_);
+  bench::RecordedRun done = RunCase(ScenarioOf(run), AllFactorsOf(run), plan_.sweep().search,
+                                    paths_, &robots_);
   if (done.recording && WantsTrace(done.row.outcome)) {
     AddProvenance(done.row.identity, *done.recording);
     record::WriteRecording(*done.recording, out_ + "/" + TraceOf(plan_.KeyOf(index)));

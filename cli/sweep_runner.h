@@ -18,7 +18,8 @@ class SweepRunner {
  public:
   /// @param folder in which the paths of the sweep's scenarios begin.
   /// @param out the folder of its results.
-  SweepRunner(const bench::SweepPlan& plan, std::string folder, std::string out, DataPaths paths);
+  SweepRunner(const bench::SweepPlan& plan, const std::string& folder, std::string out,
+              DataPaths paths);
 
   const std::string& out() const { return out_; }
   std::string shards() const { return out_ + "/shards"; }
@@ -39,6 +40,10 @@ class SweepRunner {
 
   /// @throws InputError if seeds are counted and change nothing.
   void CheckSeeds(const Checked& checked) const;
+
+  /// Why the runs that are there are not those of this program and these inputs, as Run refuses
+  /// them; or why nothing can be run any more. Empty where everything is as it was.
+  std::string WhatChanged() const;
 
   /// Makes the folder ready for rows of this program and these inputs.
   /// @param again rows of another build or of other inputs may be there, and do not count.

@@ -1,15 +1,21 @@
 #include "sidestep/cli/trace_replay.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <exception>
 #include <list>
 #include <optional>
+#include <set>
+#include <string>
 #include <utility>
+#include <variant>
 
 #include "sidestep/bench/recorded_fields.h"
 #include "sidestep/bench/run_identity.h"
 #include "sidestep/cli/wiring.h"
 #include "sidestep/core/input_error.h"
+#include "sidestep/core/joined.h"
 #include "sidestep/record/recording.h"
 #include "sidestep/render/replay/replay.h"
 #include "sidestep/render/trace_model.h"
@@ -43,6 +49,16 @@ Origin FindOrigin(const record::Recording& recording, const DataPaths& paths) {
     origin.why_no_robot = error.what();
   }
   return origin;
+}
+
+// Of everything that moves, each once: "1.4 m/s".
+std::string SpeedsOf(const scenarios::Scenario& scenario) {
+  std::set<double> speeds;
+  for (const scenarios::MovingObstacle& obstacle : scenario.moving_obstacles) {
+    speeds.insert(std::visit([](const auto& motion) { return motion.speed_m_s; }, obstacle.motion));
+  }
+  const auto text = [](double speed_m_s) { return fmt::format("{:.3g}", speed_m_s); };
+  return speeds.empty() ? "" : Joined(speeds, ", ", text) + " m/s";
 }
 
 FieldSamples SampleField(const record::Recording& recording, const Origin& origin,
@@ -89,7 +105,10 @@ render::ReplaySet MakeReplaySet(const std::vector<render::NamedRecording>& trace
     render::ReplayExtras extras;
     extras.robot = origin.robot ? &*origin.robot : nullptr;
     extras.why_no_robot = origin.why_no_robot;
-    if (origin.scenario) extras.margin_m = origin.scenario->epsilon_m;
+    if (origin.scenario) {
+      extras.margin_m = origin.scenario->epsilon_m;
+      extras.speeds = SpeedsOf(*origin.scenario);
+    }
     extras.field = SampleField(recording, origin, options.field_points);
     set.replays.push_back(render::MakeReplay(model, std::move(extras)));
     if (!options.titles.empty()) {

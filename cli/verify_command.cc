@@ -29,6 +29,7 @@
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
 #include "sidestep/core/number_text.h"
+#include "sidestep/core/parse_number.h"
 #include "sidestep/core/random.h"
 
 namespace sidestep::cli {
@@ -56,10 +57,23 @@ std::string ValueText(const bench::SqlStatement& row, int column) {
   return row.Text(column);  // of NULL: empty
 }
 
+int GuessesOf(const bench::RunDatabase& database, const std::string& path) {
+  const std::string text = database.Fact("search");
+  if (text.empty()) return 0;
+  const std::optional<int> guesses = NumberIn<int>(text);
+  if (!guesses || *guesses < 1) {
+    throw InputError(path, "`search` must be a number of guesses, is '" + text + "'");
+  }
+  return *guesses;
+}
+
 class Verification {
  public:
   explicit Verification(const VerifyOptions& options)
-      : options_(options), paths_(FindDataPaths(options.models)), database_(options.database) {}
+      : options_(options),
+        paths_(FindDataPaths(options.models)),
+        database_(options.database),
+        guesses_(GuessesOf(database_, options.database)) {}
 
   int Run() {
     const std::vector<Recorded> sample = Sample();
@@ -150,10 +164,8 @@ class Verification {
   }
 
   std::string DifferencesOf(const Recorded& recorded) const {
-    const std::string search = database_.Fact("search");
-    const bench::RunRow row = RunCase(recorded.scenario, recorded.factors,
-                                      search.empty() ? 0 : std::stoi(search), paths_, &robots_)
-                                  .row;
+    const bench::RunRow row =
+        RunCase(recorded.scenario, recorded.factors, guesses_, paths_, &robots_).row;
     std::vector<std::string> different;
     const auto compare = [&](const std::string& column, const std::string& now) {
       const auto then = recorded.values.find(column);
@@ -180,6 +192,7 @@ class Verification {
   DataPaths paths_;
   mutable CheckedRobots robots_;  // that were read for earlier runs
   bench::RunDatabase database_;
+  int guesses_;  // of a search
 };
 
 int Verify(const VerifyOptions& options) {

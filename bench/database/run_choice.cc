@@ -7,6 +7,9 @@
 namespace sidestep::bench {
 namespace {
 
+// A million runs take half of them; an endless expression a few seconds.
+constexpr std::int64_t kMostSteps = 300'000'000;
+
 // 'it''s'
 std::string SqlText(const std::string& text) {
   std::string quoted = "'";
@@ -55,18 +58,15 @@ std::string FromSql(const RunDatabase& database, const AskedFactor& asked) {
          " FROM everything r LEFT JOIN everything o ON " + match + ")";
 }
 
-// Without what stands before it in a message of the database's.
-std::string WhyOnly(const InputError& error) {
-  const std::string text = error.what();
-  const std::size_t colon = text.rfind(".db: ");
-  return colon == std::string::npos ? text : text.substr(colon + 5);
-}
-
-void Try(const RunDatabase& database, const std::string& flag, const std::string& sql) {
+// The rows of a person's SQL; what is wrong with it is told by its flag.
+template <class Use>
+void ForEachRow(const RunDatabase& database, const std::string& flag, const std::string& sql,
+                const Use& use) {
   try {
-    database.sql().Prepare(sql);
+    SqlStatement row = database.sql().Prepare(sql);
+    while (row.Step()) use(row);
   } catch (const InputError& error) {
-    throw InputError(flag, WhyOnly(error));
+    throw InputError(flag, std::string(error.what()).substr(database.sql().name().size() + 2));
   }
 }
 
@@ -99,13 +99,15 @@ void RequireOneExpression(const std::string& flag, const std::string& text) {
 
 std::vector<ChosenRun> ChooseRuns(const RunDatabase& database, const RunChoice& choice) {
   const AskedFactor asked = AskedOf(database);
+  const SqlBudget budget(database.sql(), kMostSteps);
   const std::string from = FromSql(database, asked);
   const std::string order = choice.order.empty() ? "min_clearance_m" : choice.order;
   std::string where;
   if (!choice.where.empty()) {
     RequireOneExpression("--where", choice.where);
     where = " WHERE (" + choice.where + ")";
-    Try(database, "--where", from + " SELECT 1 FROM chosen" + where);
+    ForEachRow(database, "--where", from + " SELECT count(*) FROM chosen" + where,
+               [](const SqlStatement&) {});
   }
   RequireOneExpression("--order", order);
   std::string columns = "id, outcome, seed, scenario, command, beside_id, beside_command";
@@ -115,10 +117,8 @@ std::vector<ChosenRun> ChooseRuns(const RunDatabase& database, const RunChoice& 
   // Of equal ones the first counts.
   const std::string sql = from + " SELECT " + columns + " FROM chosen" + where + " ORDER BY " +
                           order + ", id LIMIT " + std::to_string(choice.top);
-  Try(database, "--order", sql);
-  SqlStatement row = database.sql().Prepare(sql);
   std::vector<ChosenRun> runs;
-  while (row.Step()) {
+  ForEachRow(database, "--order", sql, [&](const SqlStatement& row) {
     ChosenRun& run = runs.emplace_back();
     run.id = row.Integer(0);
     run.what = row.Text(1) + ", " + row.Text(3) + ", seed " + row.Text(2);
@@ -135,7 +135,7 @@ std::vector<ChosenRun> ChooseRuns(const RunDatabase& database, const RunChoice& 
       }
       column += 2;
     }
-  }
+  });
   return runs;
 }
 

@@ -11,6 +11,11 @@
 #include "sidestep/core/input_error.h"
 
 namespace sidestep::bench {
+namespace {
+
+constexpr int kPiece = 10'000;  // steps between two looks at a budget
+
+}  // namespace
 
 void SqlStatement::Finalize::operator()(sqlite3_stmt* statement) const {
   sqlite3_finalize(statement);
@@ -92,7 +97,11 @@ char SqlStatement::Kind(int column) const {
   }
 }
 
-void SqlStatement::Fail() const { throw InputError(name_, sqlite3_errmsg(database_)); }
+void SqlStatement::Fail() const {
+  const bool is_budget = sqlite3_errcode(database_) == SQLITE_INTERRUPT;  // nobody else interrupts
+  throw InputError(
+      name_, is_budget ? "takes too many steps, as if it were endless" : sqlite3_errmsg(database_));
+}
 
 void SqlDatabase::Close::operator()(sqlite3* database) const { sqlite3_close(database); }
 
@@ -128,6 +137,20 @@ void SqlDatabase::Execute(const std::string& sql) const {
     throw InputError(name_, sqlite3_errmsg(database_.get()));
   }
 }
+
+SqlBudget::SqlBudget(const SqlDatabase& database, std::int64_t steps)
+    : database_(database.database_.get()),
+      left_(steps / kPiece),
+      most_bytes_before_(sqlite3_limit(database_, SQLITE_LIMIT_LENGTH, kMostBytes)) {
+  sqlite3_progress_handler(database_, kPiece, &SqlBudget::Count, this);
+}
+
+SqlBudget::~SqlBudget() {
+  sqlite3_progress_handler(database_, 0, nullptr, nullptr);
+  sqlite3_limit(database_, SQLITE_LIMIT_LENGTH, most_bytes_before_);
+}
+
+int SqlBudget::Count(void* budget) { return --static_cast<SqlBudget*>(budget)->left_ < 0 ? 1 : 0; }
 
 std::string SqlName(const std::string& name) {
   std::string quoted = "\"";

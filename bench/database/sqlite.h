@@ -58,11 +58,13 @@ class SqlDatabase {
   /// @param name stands for the file in messages.
   static SqlDatabase Create(const std::string& file, const std::string& name);
 
+  const std::string& name() const { return name_; }
   SqlStatement Prepare(const std::string& sql) const;
   /// One or several statements without parameters.
   void Execute(const std::string& sql) const;
 
  private:
+  friend class SqlBudget;
   struct Close {
     void operator()(sqlite3* database) const;
   };
@@ -70,6 +72,27 @@ class SqlDatabase {
 
   std::string name_;
   std::unique_ptr<sqlite3, Close> database_;
+};
+
+/// For SQL of a person's, which may be endless: while it lives, all statements of a database
+/// together may take so many steps of SQLite's machine and make no text longer than kMostBytes.
+/// What goes beyond throws InputError, as everything that is wrong with SQL does.
+class SqlBudget {
+ public:
+  static constexpr int kMostBytes = 1 << 24;
+
+  /// @param database must outlive it, and have one budget at a time.
+  SqlBudget(const SqlDatabase& database, std::int64_t steps);
+  ~SqlBudget();
+  SqlBudget(const SqlBudget&) = delete;
+  SqlBudget& operator=(const SqlBudget&) = delete;
+
+ private:
+  static int Count(void* budget);
+
+  sqlite3* database_;
+  std::int64_t left_;  // pieces of kPiece steps
+  int most_bytes_before_;
 };
 
 /// A name as SQL takes it: "as ""it"" is".

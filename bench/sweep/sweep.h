@@ -42,6 +42,9 @@ struct Sweep {
   int search = 0;                    ///< guesses, where `knowledge` is `search`
   KeptTraces traces = KeptTraces::kNone;
   SweepQuestion question;
+  std::string file;  ///< that says all this; empty: none
+  /// Where: of `scenarios`, `seeds`, `variations`, `set.KEY`, `axes.KEY`.
+  std::map<std::string, int> lines;
 };
 
 /// Reads a sweep file; docs/sweeps.md has its keys.

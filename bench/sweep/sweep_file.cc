@@ -242,6 +242,10 @@ Sweep ParseSweep(const std::string& text, const std::string& path) {
       });
   Sweep sweep;
   sweep.name = std::filesystem::path(path).stem().string();
+  sweep.file = path;
+  for (const char* const key : {"scenarios", "seeds", "variations"}) {
+    if (top.Has(key)) sweep.lines[key] = top.Line(key);
+  }
   if (top.Has("description")) sweep.description = top.GetString("description");
   sweep.scenarios = top.GetStrings("scenarios");
   CheckScenarios(top, sweep.scenarios);
@@ -249,6 +253,7 @@ Sweep ParseSweep(const std::string& text, const std::string& path) {
     const YamlReader map = top.GetMap("set");
     for (const std::string& key : map.Keys()) {
       map.Has(key);
+      sweep.lines["set." + key] = map.Line(key);
       sweep.settings[key] = SettingText(*tree.Find("set")->Find(key));
     }
   }
@@ -258,7 +263,10 @@ Sweep ParseSweep(const std::string& text, const std::string& path) {
   if (top.Has("axes")) {
     const YamlReader map = top.GetMap("axes");
     const AxisReader reader(map, *tree.Find("axes"));
-    for (const std::string& name : map.Keys()) sweep.axes.push_back(reader.Read(name));
+    for (const std::string& name : map.Keys()) {
+      sweep.lines["axes." + name] = map.Line(name);
+      sweep.axes.push_back(reader.Read(name));
+    }
   }
   CheckGivenOnce(top, sweep);
   sweep.seeds = ReadSeeds(top);

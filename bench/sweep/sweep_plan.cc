@@ -24,7 +24,8 @@ std::uint64_t WithSeed(Fingerprint hash, std::uint64_t seed) {
 SweepPlan::SweepPlan(Sweep sweep) : sweep_(std::move(sweep)) {
   const auto multiply = [&](std::size_t count) {
     if (num_combinations_ * count > kMostRuns / sweep_.seeds.size()) {
-      throw InputError(sweep_.name, "holds more than 100 million runs");
+      throw InputError(sweep_.file.empty() ? sweep_.name : sweep_.file,
+                       "holds more than 100 million runs");
     }
     num_combinations_ *= count;
   };

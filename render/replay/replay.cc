@@ -231,12 +231,13 @@ void AddMarks(const record::Recording& recording, Replay* replay) {
                    [](const ReplayMark& a, const ReplayMark& b) { return a.t_s < b.t_s; });
 }
 
-void AddFacts(const record::Recording& recording, Replay* replay) {
+void AddFacts(const record::Recording& recording, const std::string& speeds, Replay* replay) {
   for (const char* const key :
        {"scenario", "robot", "planner", "knowledge", "predictor", "seed", "outcome", "reason"}) {
     const auto fact = recording.header.find(key);
     if (fact != recording.header.end()) replay->facts.push_back(*fact);
   }
+  if (!speeds.empty()) replay->facts.emplace_back("speed", speeds);
   const struct {
     const char *metric, *format, *name;
   } shown[] = {{"time_to_goal_s", "{:.3f} s", "time to goal"},
@@ -261,7 +262,7 @@ Replay MakeReplay(TraceModel& trace, ReplayExtras extras) {
   AddPaths(trace, &replay);
   AddClearance(recording, &replay);
   AddMarks(recording, &replay);
-  AddFacts(recording, &replay);
+  AddFacts(recording, extras.speeds, &replay);
   replay.why_no_spheres = extras.why_no_robot;
   replay.margin_m = extras.margin_m;
   replay.field = std::move(extras.field);

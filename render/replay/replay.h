@@ -100,6 +100,7 @@ struct ReplayExtras {
   std::string why_no_robot;
   FieldSamples field;
   std::optional<double> margin_m;
+  std::string speeds;  ///< of what moves, in words; empty: not known
 };
 
 /// Moves the trace to other moments.

@@ -233,6 +233,25 @@ TEST_F(ReportTest, RefusesWhatIsNoSqlOrMoreThanOneExpression) {
   EXPECT_EQ(database.num_runs(), 18);
 }
 
+TEST_F(ReportTest, EndsWhatIsEndlessOrGoesWrongOnTheWay) {
+  const RunDatabase database = Write({});
+  const std::string endless =
+      "(WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT max(i) FROM n) > 0";
+  const auto complaint = [&](const std::string& where, const std::string& order) {
+    try {
+      ChooseRuns(database, {where, order, 1});
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("was accepted");
+  };
+  EXPECT_EQ(complaint(endless, ""), "--where: takes too many steps, as if it were endless");
+  EXPECT_EQ(complaint("", endless), "--order: takes too many steps, as if it were endless");
+  EXPECT_EQ(complaint("abs(-9223372036854775807 - 1) > 0", ""), "--where: integer overflow");
+  EXPECT_EQ(complaint("length(zeroblob(900000000)) > 0", ""), "--where: string or blob too big");
+  EXPECT_THAT(Ids(database, {"", "", 2}), ElementsAre(13, 14)) << "it is as it was";
+}
+
 // --- Pictures
 // -------------------------------------------------------------------------------------
 

@@ -463,7 +463,7 @@ TEST(Study, MakesARowOfACombinationThatIsRefusedAndGoesOn) {
   const auto rows = RowsIn(folder.path());
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[1].at("outcome"), "failed");
-  EXPECT_EQ(rows[1].at("error"), "--speed: is above the max_speed_m_s of 'hsr'");
+  EXPECT_EQ(rows[1].at("error"), "speed_m_s: is above the max_speed_m_s of 'hsr'");
   EXPECT_EQ(rows[1].at("command"), "");
   EXPECT_THAT(finished.out, HasSubstr("| speed_m_s | episodes |"));
 }

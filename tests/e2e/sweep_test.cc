@@ -198,6 +198,12 @@ TEST_F(SweepTest, GoesOnAfterAChangedCommentButNotAfterAChangedRobotOrScenario) 
 
   append("scenarios/walkway_behaviours.yaml", "predictor: imm\n");
   EXPECT_EQ(run().exit_code, 2);
+  for (const char* const what : {"status", "merge"}) {
+    const Finished told = Sweep(what, "out", {}, environment);
+    EXPECT_EQ(told.exit_code, 1) << what;
+    EXPECT_THAT(told.err, HasSubstr("holds runs of other scenarios, settings or robots")) << what;
+    EXPECT_THAT(told.out, HasSubstr("32 of 32 runs")) << what;
+  }
 }
 
 TEST_F(SweepTest, RunsOnlyWhatIsNewWhenItsPlanGrowsAndLeavesOutWhatItLost) {
@@ -298,6 +304,79 @@ TEST_F(SweepTest, WritesACsvOfEveryRow) {
       EXPECT_EQ(std::stod(line.fields[c]), rows.Number(0));
     }
   }
+}
+
+TEST_F(SweepTest, IsVerifiedFromAnywhereWhereItsScenarioIsGivenByAPath) {
+  fs::create_directories(folder_.path() / "elsewhere");
+  fs::copy(fs::path(SIDESTEP_SOURCE_DIR) / "scenarios/hsr_walkway.yaml",
+           folder_.path() / "own.yaml");
+  Write(
+      "scenarios: [./own.yaml]\n"
+      "set: {planner.name: straight_line, horizon.duration_s: 1}\n"
+      "axes: {knowledge: [static, prediction]}\n");
+  const std::string elsewhere = (folder_.path() / "elsewhere").string();
+  const Finished run =
+      RunProgram({SIDESTEP_PROGRAM, "sweep", "run", "quick.yaml", "--out", "relative"}, {},
+                 folder_.path().string());
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Finished verify =
+      RunProgram({SIDESTEP_PROGRAM, "verify", "../relative/results.db"}, {}, elsewhere);
+  EXPECT_EQ(verify.exit_code, 0) << verify.out << verify.err;
+  EXPECT_THAT(verify.out, HasSubstr("2 of 2 runs came out the same"));
+  const bench::RunDatabase database(DatabaseOf("relative"));
+  bench::SqlStatement command = database.Select("command");
+  ASSERT_TRUE(command.Step());
+  EXPECT_THAT(command.Text(0), HasSubstr("sidestep run " + (folder_.path() / "own.yaml").string()));
+}
+
+struct SweepFault {
+  const char *sweep, *says;
+};
+
+TEST_F(SweepTest, SaysWhereInItsFileTheFaultIs) {
+  for (const SweepFault& fault : {
+           SweepFault{"scenarios: [hsr_walkway]\nset:\n  planner.nme: gpmp\n",
+                      ":3: set.planner.nme: is not a known key"},
+           {"scenarios: [hsr_walkway]\nset: {knowledge: magic}\n",
+            ":2: set.knowledge: must be one of static"},
+           {"scenarios: [hsr_walkway]\naxes:\n  predictor: [magic]\n",
+            ":3: axes.predictor: must be one of"},
+           {"scenarios: [hsr_walkway]\naxes:\n  replanning.latency_s/replanning.rate_hz: [[5, "
+            "10]]\n",
+            ":3: axes.replanning.latency_s: must not exceed the horizon"},
+           {"scenarios: [hsr_walkway]\n\nvariations: {delay_s: [1, 0]}\n",
+            ":3: variations.delay_s: must be [LEAST, MOST]"},
+           {"scenarios: [hsr_walkway]\naxes:\n  knowledge: [static]\n  speed_m_s: [1000]\n",
+            ":4: axes.speed_m_s: must be a number from 0 to 100"},
+           {"scenarios: [walkway_behaviours]\nset: {behaviour: speed_up_2}\naxes: {speed_m_s: "
+            "[90]}\n",
+            ":3: axes.speed_m_s: "},
+           {"scenarios: [walkway_behaviours]\nset: {behaviour: magic}\n",
+            ":2: set.behaviour: must be one of straight"},
+           {"set: {seed_: 1}\nscenarios: [nowhere]\n", ":2: scenarios: 'nowhere' is no scenario"},
+           {"scenarios: [./nofile.yaml]\n", ":1: scenarios: "},
+           {"scenarios: [hsr_walkway]\nset: {robot: {model: panda}}\n",
+            ":2: set.robot.base: is missing"},
+           {"scenarios: [hsr_walkway]\nseeds: 3\n", ":2: seeds: a seed changes nothing"},
+       }) {
+    Write(fault.sweep);
+    const Finished plan = Sweep("plan", "none");
+    EXPECT_EQ(plan.exit_code, 2) << fault.sweep;
+    EXPECT_THAT(plan.err, ::testing::StartsWith(file_ + fault.says)) << fault.sweep;
+    EXPECT_THAT(plan.err, Not(HasSubstr("--")));
+    EXPECT_EQ(std::count(plan.err.begin(), plan.err.end(), '\n'), 1) << plan.err;
+  }
+}
+
+TEST_F(SweepTest, IsNotVerifiedWhereItsDatabaseNamesNoNumberOfGuesses) {
+  EXPECT_EQ(Sweep("run", "out").exit_code, 0);
+  bench::SqlDatabase::Create(OutOf("scratch.db"), "scratch")
+      .Execute("ATTACH '" + DatabaseOf("out") +
+               "' AS other; INSERT INTO other.sidestep VALUES ('search', '1e99 and more')");
+  const Finished verify = RunProgram({SIDESTEP_PROGRAM, "verify", DatabaseOf("out")});
+  EXPECT_EQ(verify.exit_code, 2);
+  EXPECT_EQ(verify.err,
+            DatabaseOf("out") + ": `search` must be a number of guesses, is '1e99 and more'\n");
 }
 
 TEST_F(SweepTest, IsVerifiedBitForBit) {

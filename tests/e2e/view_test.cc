@@ -86,6 +86,12 @@ TEST_F(ViewPage, IsSmallAndOpensWithoutAComplaintOrTheNetwork) {
   EXPECT_THAT(browser_->complaints(), IsEmpty());
 }
 
+TEST_F(ViewPage, SaysOnTopWhichCaseItIs) {
+  browser_->Open(Path("two.html"));
+  EXPECT_EQ(browser_->Evaluate("document.querySelector('.replay h1').textContent"),
+            "hsr_walkway, seed 1, 1.4 m/s");
+}
+
 TEST_F(ViewPage, ShowsAnotherPictureAtAnotherTimeAndTheSameAtTheSame) {
   browser_->Open(Path("one.html"), "t=0.5");
   const nlohmann::json early = browser_->Evaluate(kLook);

@@ -40,7 +40,15 @@ function mountReplay(root, data, options = {}) {
     onclick: () => setTheme(themeNow() === "dark" ? "light" : "dark"),
   }, "◐");
   const scenario = (traces[0].facts.find(([name]) => name === "scenario") || ["", traces[0].name])[1];
-  const header = make("header", {}, make(options.embedded ? "h3" : "h1", {}, scenario), clock);
+  // Which case it is: what all traces share here, what tells them apart above each.
+  const factOf = (trace, key) => (trace.facts.find(([name]) => name === key) || ["", ""])[1];
+  const caseFacts = ["seed", "speed"].map((key) => ({
+    text: (trace) => factOf(trace, key) && (key === "seed" ? "seed " : "") + factOf(trace, key),
+    shared: traces.every((trace) => factOf(trace, key) === factOf(traces[0], key)),
+  }));
+  const shared = caseFacts.filter((fact) => fact.shared).map((fact) => fact.text(traces[0]));
+  const header = make("header", {}, make(options.embedded ? "h3" : "h1", {},
+                                         [scenario, ...shared].filter(Boolean).join(", ")), clock);
   if (!options.embedded) header.append(themeButton);
 
   const canvas = make("canvas", {role: "img",
@@ -48,7 +56,9 @@ function mountReplay(root, data, options = {}) {
   const panels = traces.map((trace, i) => {
     const swatch = make("span", {class: "swatch", style: `background:${LINE_COLORS[i % 6]}`});
     const title = make("div", {class: "panel-title"}, swatch, make("b", {}, trace.title),
-                       make("span", {class: "explanation"}, trace.explanation));
+                       make("span", {class: "explanation"},
+                            [...caseFacts.filter((fact) => !fact.shared).map((fact) => fact.text(trace)),
+                             trace.explanation].filter(Boolean).join(", ")));
     const words = make("span"), speed = make("span", {class: "speed"});
     const status = make("div", {class: "panel-status"}, words, speed);
     const view = make("div", {class: "panel-view"});
