@@ -9,7 +9,8 @@
 namespace sidestep::cli {
 
 bench::RecordedRun RunCase(const std::string& scenario, const bench::Factors& factors, int guesses,
-                           const DataPaths& paths, CheckedRobots* robots) {
+                           const DataPaths& paths, const bench::WorldFactory& make_world,
+                           CheckedRobots* robots) {
   std::optional<Problem> problem;
   try {
     problem = LoadCase(scenario, factors, paths, robots);
@@ -20,7 +21,7 @@ bench::RecordedRun RunCase(const std::string& scenario, const bench::Factors& fa
   if (IsSearch(factors)) {
     run.row = bench::RunSearchRow(problem->scenario, problem->robot, guesses, {});
   } else {
-    run = bench::RunEpisodeRow(problem->scenario, problem->robot, SimulatedWorlds(paths), {});
+    run = bench::RunEpisodeRow(problem->scenario, problem->robot, make_world, {});
   }
   run.row.identity = Identify(problem->scenario, paths);
   if (IsSearch(factors)) {

@@ -53,7 +53,8 @@ SweepRunner::SweepRunner(const bench::SweepPlan& plan, const std::string& folder
     : plan_(plan),
       folder_((fs::current_path() / folder).lexically_normal().string()),
       out_(std::move(out)),
-      paths_(std::move(paths)) {}
+      paths_(std::move(paths)),
+      make_world_(SimulatedWorlds(paths_)) {}
 
 std::string SweepRunner::ScenarioOf(const bench::PlannedRun& run) const {
   const std::string& name = run.scenario;
@@ -216,7 +217,7 @@ bench::ShardMaker SweepRunner::Prepare(bool again) const {
 bench::RunRow SweepRunner::RunOne(std::uint64_t index) const {
   const bench::PlannedRun run = plan_.At(index);
   bench::RecordedRun done = RunCase(ScenarioOf(run), AllFactorsOf(run), plan_.sweep().search,
-                                    paths_, &robots_);
+                                    paths_, make_world_, &robots_);
   if (done.recording && WantsTrace(done.row.outcome)) {
     AddProvenance(done.row.identity, *done.recording);
     record::WriteRecording(*done.recording, out_ + "/" + TraceOf(plan_.KeyOf(index)));

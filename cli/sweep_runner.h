@@ -84,6 +84,7 @@ class SweepRunner {
   std::string folder_, out_;
   DataPaths paths_;
   mutable CheckedRobots robots_;  // that were read for earlier runs
+  bench::WorldFactory make_world_;
 };
 
 }  // namespace sidestep::cli

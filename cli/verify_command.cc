@@ -72,6 +72,7 @@ class Verification {
   explicit Verification(const VerifyOptions& options)
       : options_(options),
         paths_(FindDataPaths(options.models)),
+        make_world_(SimulatedWorlds(paths_)),
         database_(options.database),
         guesses_(GuessesOf(database_, options.database)) {}
 
@@ -165,7 +166,7 @@ class Verification {
 
   std::string DifferencesOf(const Recorded& recorded) const {
     const bench::RunRow row =
-        RunCase(recorded.scenario, recorded.factors, guesses_, paths_, &robots_).row;
+        RunCase(recorded.scenario, recorded.factors, guesses_, paths_, make_world_, &robots_).row;
     std::vector<std::string> different;
     const auto compare = [&](const std::string& column, const std::string& now) {
       const auto then = recorded.values.find(column);
@@ -191,6 +192,7 @@ class Verification {
   const VerifyOptions& options_;
   DataPaths paths_;
   mutable CheckedRobots robots_;  // that were read for earlier runs
+  bench::WorldFactory make_world_;
   bench::RunDatabase database_;
   int guesses_;  // of a search
 };

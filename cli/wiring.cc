@@ -204,10 +204,10 @@ Scene LoadScene(const std::string& name, const Overrides& overrides, const DataP
 }
 
 bench::WorldFactory SimulatedWorlds(const DataPaths& paths) {
-  return [models = paths.all_models()](const scenarios::Scenario& scenario,
-                                       const robot::RobotModel& robot) {
+  return [models = paths.all_models(), store = std::make_shared<sim::ModelStore>()](
+             const scenarios::Scenario& scenario, const robot::RobotModel& robot) {
     return bench::MakeEpisodeWorld(
-        std::make_shared<sim::Simulation>(scenario, robot, models, &MakeSensor));
+        std::make_shared<sim::Simulation>(scenario, robot, models, &MakeSensor, store.get()));
   };
 }
 

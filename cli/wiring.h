@@ -54,7 +54,8 @@ struct Scene {
 /// The same for what needs no robot, so that the scenario may have none. @throws InputError.
 Scene LoadScene(const std::string& scenario, const Overrides& overrides, const DataPaths& paths);
 
-/// Simulated worlds.
+/// Simulated worlds. Who makes many keeps this, or copies of it: what they have in common is
+/// compiled once.
 bench::WorldFactory SimulatedWorlds(const DataPaths& paths);
 
 }  // namespace sidestep::cli

@@ -184,11 +184,11 @@ const XMLElement& ParseModel(const std::string& xml, const std::string& name,
   return *root;
 }
 
-MujocoModelPtr LoadModelFile(const std::string& path) {
+MujocoModelPtr LoadModelFile(const std::string& path, ModelStore* store) {
   const std::string xml = ReadModelFile(path);
   tinyxml2::XMLDocument document;
   ParseModel(xml, path, &document);
-  return LoadMujocoModel(xml, path);
+  return store == nullptr ? LoadMujocoModel(xml, path) : store->Load(xml, path);
 }
 
 MujocoModelPtr LoadForeignModel(const std::string& xml, const std::string& name) {

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "sidestep/sim/model_store.h"
 #include "sidestep/sim/mujoco_model.h"
 
 namespace tinyxml2 {
@@ -23,7 +24,8 @@ const tinyxml2::XMLElement& ParseModel(const std::string& xml, const std::string
                                        tinyxml2::XMLDocument* document);
 
 /// Compiles an MJCF file of models/, checked like that. @throws InputError.
-MujocoModelPtr LoadModelFile(const std::string& path);
+/// @param store of models that were compiled before, to which its own is added; may be null.
+MujocoModelPtr LoadModelFile(const std::string& path, ModelStore* store = nullptr);
 
 /// Compiles an MJCF text that came from elsewhere, such as that of a trace, if it is no more than
 /// what BuildWorldXml (sim/world_xml.h) could have written: checked like that, of no other sections

@@ -27,9 +27,9 @@ std::string TypeName(int type, const std::string& name) {
 
 }  // namespace
 
-std::vector<PictureGeom> PictureOf(const std::string& path) {
+std::vector<PictureGeom> PictureOf(const std::string& path, ModelStore* store) {
   constexpr int kLastGroupDrawn = 2;
-  const MujocoModelPtr model = LoadModelFile(path);
+  const MujocoModelPtr model = LoadModelFile(path, store);
   const MujocoDataPtr data = MakeMujocoData(*model);
   mj_kinematics(model.get(), data.get());
   std::vector<PictureGeom> picture;

@@ -32,11 +32,13 @@ std::vector<std::string> NamesOf(const std::vector<scenarios::MovingObstacle>& o
 // Compiles the world. What is wrong with the robot's own file is told with its lines: those of the
 // whole world are of a text that nobody wrote.
 MujocoModelPtr Compile(const std::string& xml, const scenarios::Scenario& scenario,
-                       const robot::RobotModel& robot, const ModelFolders& models) {
+                       const robot::RobotModel& robot, const ModelFolders& models,
+                       ModelStore* store) {
+  const std::string name = scenario.file + ": its world";
   const std::string mjcf = RobotMjcf(scenario, models);
   MujocoModelPtr model;
   try {
-    model = LoadMujocoModel(xml, scenario.file + ": its world");
+    model = store == nullptr ? LoadMujocoModel(xml, name) : store->Load(xml, name);
   } catch (const InputError&) {
     CheckAgreement(robot, *LoadArmFile(mjcf), mjcf);
     throw;
@@ -48,11 +50,12 @@ MujocoModelPtr Compile(const std::string& xml, const scenarios::Scenario& scenar
 }  // namespace
 
 Simulation::Simulation(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
-                       const ModelFolders& models, const SensorMaker& make_sensor)
-    : model_xml_(BuildWorldXml(scenario, robot.mount_links(), models)),
+                       const ModelFolders& models, const SensorMaker& make_sensor,
+                       ModelStore* store)
+    : model_xml_(BuildWorldXml(scenario, robot.mount_links(), models, store)),
       joints_(robot.joint_names()),
       obstacles_(NamesOf(scenario.moving_obstacles)),
-      world_(scenario, Compile(model_xml_, scenario, robot, models), joints_,
+      world_(scenario, Compile(model_xml_, scenario, robot, models, store), joints_,
              StartOf(scenario, robot)),
       truth_(world_),
       robot_(std::make_unique<SimulatedRobot>(

@@ -9,6 +9,7 @@
 #include "sidestep/robot/sensor.h"
 #include "sidestep/robot/world_truth.h"
 #include "sidestep/scenarios/scenario.h"
+#include "sidestep/sim/model_store.h"
 #include "sidestep/sim/sensors.h"
 #include "sidestep/sim/simulated_truth.h"
 #include "sidestep/sim/world.h"
@@ -25,8 +26,10 @@ class Simulation {
   ///   model files that do not fit, a start that the robot does not have, or
   ///   an unknown sensor.
   /// @param make_sensor for who has more sensors than these (sim/sensors.h).
+  /// @param store of the models of other simulations, to which its own is added; may be null.
   Simulation(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
-             const ModelFolders& models, const SensorMaker& make_sensor = MakeSensor);
+             const ModelFolders& models, const SensorMaker& make_sensor = MakeSensor,
+             ModelStore* store = nullptr);
   /// The world of a scenario without a robot; robot() is then only its clock (sim/no_robot.h).
   Simulation(const scenarios::Scenario& scenario, const ModelFolders& models,
              const SensorMaker& make_sensor = MakeSensor);

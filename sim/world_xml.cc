@@ -336,10 +336,10 @@ Pose AppearancePose(const scenarios::MovingObstacle& obstacle) {
 }
 
 void AddPicture(const scenarios::MovingObstacle& obstacle, const std::string& path,
-                XMLElement* body) {
+                ModelStore* store, XMLElement* body) {
   XMLElement* frame = Append(body, "body");
   SetPose(frame, AppearancePose(obstacle));
-  for (const PictureGeom& picture : PictureOf(path)) {
+  for (const PictureGeom& picture : PictureOf(path, store)) {
     XMLElement* geom =
         Append(frame, "geom", {{"type", picture.type}, {"size", ToText(picture.size)}});
     SetPose(geom, picture.X_AG);
@@ -351,7 +351,7 @@ void AddPicture(const scenarios::MovingObstacle& obstacle, const std::string& pa
 }
 
 void AddMovingObstacle(const scenarios::Scenario& scenario, std::size_t index,
-                       const ModelFolders& models, XMLElement* worldbody) {
+                       const ModelFolders& models, ModelStore* store, XMLElement* worldbody) {
   const scenarios::MovingObstacle& obstacle = scenario.moving_obstacles[index];
   XMLElement* body = Append(worldbody, "body", {{"name", obstacle.name}, {"mocap", "true"}});
   SetPose(body, PoseAt(obstacle, EpisodeTime(0)));
@@ -372,7 +372,7 @@ void AddMovingObstacle(const scenarios::Scenario& scenario, std::size_t index,
     throw scenarios::WrongValue(scenario, key,
                                 "there is no " + file + " in " + Joined(models.folders()));
   }
-  AddPicture(obstacle, path, body);
+  AddPicture(obstacle, path, store, body);
 }
 
 // Names of bodies and geoms at or below `element`, as far as they have one.
@@ -404,7 +404,8 @@ void RefuseNamesOfTheRobot(const scenarios::Scenario& scenario, const XMLElement
 }  // namespace
 
 std::string BuildWorldXml(const scenarios::Scenario& scenario,
-                          const std::vector<std::string>& mount_links, const ModelFolders& models) {
+                          const std::vector<std::string>& mount_links, const ModelFolders& models,
+                          ModelStore* store) {
   XMLDocument document;
   XMLElement* world = document.NewElement("mujoco");
   document.InsertEndChild(world);
@@ -422,7 +423,7 @@ std::string BuildWorldXml(const scenarios::Scenario& scenario,
   }
   for (const auto& fixed : scenario.static_obstacles) AddStaticObstacle(fixed, worldbody);
   for (std::size_t i = 0; i < scenario.moving_obstacles.size(); ++i) {
-    AddMovingObstacle(scenario, i, models, worldbody);
+    AddMovingObstacle(scenario, i, models, store, worldbody);
   }
   if (!mount_links.empty()) {
     // The floor is a geom of the world itself, the only one that is.

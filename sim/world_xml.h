@@ -5,6 +5,7 @@
 
 #include "sidestep/core/model_folders.h"
 #include "sidestep/scenarios/scenario.h"
+#include "sidestep/sim/model_store.h"
 
 namespace sidestep::sim {
 
@@ -38,9 +39,11 @@ inline constexpr const char* kTopCamera = "top";
 /// the damping these models have, and holds the motors' torque over the step as a 1 kHz controller
 /// does; the implicit integrator would add cost and no accuracy.
 ///
+/// @param store of models that were compiled before, as those of appearances are; may be null.
 /// @throws InputError for a model file that is missing, is not MJCF, refers to other files, or
 /// cannot be merged.
 std::string BuildWorldXml(const scenarios::Scenario& scenario,
-                          const std::vector<std::string>& mount_links, const ModelFolders& models);
+                          const std::vector<std::string>& mount_links, const ModelFolders& models,
+                          ModelStore* store = nullptr);
 
 }  // namespace sidestep::sim
