@@ -22,6 +22,7 @@
 #include "sidestep/cli/command.h"
 #include "sidestep/cli/console.h"
 #include "sidestep/cli/jobs_option.h"
+#include "sidestep/cli/memory_watch.h"
 #include "sidestep/cli/number_range.h"
 #include "sidestep/cli/option_lists.h"
 #include "sidestep/cli/out_folder.h"
@@ -77,11 +78,11 @@ Draws ParseSoak(const std::string& text) {
   return draws;
 }
 
-// The most that the program has had so far; its unit does not matter.
-double MostMemory() {
+// The most that the program has had so far.
+double MostBytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss);
+  return 1024 * static_cast<double>(usage.ru_maxrss);
 }
 
 bench::ValidationSubject SubjectOf(const ValidateOptions& options, const DataPaths& paths) {
@@ -252,44 +253,50 @@ class Validation {
 
   // In the order of the cases, and what was there before and is no case now; those that were not
   // run to their end are left out.
-  // @param memory_growth of the last nine tenths, if there is a soak.
+  // @param memory_growth from the first tenth to the last, if there is a soak, as a share of the
+  // most that the program had.
   std::vector<bench::RunRow> RunCases(std::map<std::string, bench::RunRow> before,
                                       const StopSignals& signals,
                                       std::optional<double>& memory_growth) const {
     const int count = static_cast<int>(cases_.size());
-    double memory_at_first = 0;
-    std::vector<std::optional<bench::RunRow>> done(cases_.size());
+    // As text, so that what they hold of memory is known.
+    std::vector<std::string> done(cases_.size());
+    double kept_bytes = 0;
     std::mutex telling;
     int num_done = 0, told = 0;
     for (std::size_t i = 0; i < cases_.size(); ++i) {
       const auto found = before.find(NameOf(cases_[i]));
       if (found == before.end()) continue;
-      done[i] = std::move(found->second);
+      done[i] = bench::ValidationCsv({found->second});
       before.erase(found);
       ++num_done;
     }
+    MemoryWatch memory(count - num_done);
     if (num_done > 0) PrintError("{} of {} episodes, from before\n", num_done, count);
     bench::RunTasks(count, options_.jobs, [&](int i) {
-      if (signals.count() > 0 || done[static_cast<std::size_t>(i)]) return;
+      if (signals.count() > 0 || !done[static_cast<std::size_t>(i)].empty()) return;
       const bench::ValidationCase& one = cases_[static_cast<std::size_t>(i)];
       bench::RunRow row =
           RunValidationCase(one, subject_, worlds_, [&] { return signals.first(); }).row;
       if (signals.count() > 0) return;
       row.command = ReplayOf(one);
-      done[static_cast<std::size_t>(i)] = std::move(row);
+      std::string text = bench::ValidationCsv({row});
+      row = {};
       const std::lock_guard lock(telling);
+      kept_bytes += static_cast<double>(text.capacity());
+      done[static_cast<std::size_t>(i)] = std::move(text);
+      memory.Count(HeldBytes() - kept_bytes);
       const int percent = 100 * ++num_done / count;
-      if (percent < 10 || memory_at_first == 0) memory_at_first = MostMemory();
       if (percent / 10 == told / 10) return;
       told = percent;
       PrintError("{} of {} episodes\n", num_done, count);
     });
-    if (!options_.soak.empty() && memory_at_first > 0) {
-      memory_growth = MostMemory() / memory_at_first - 1;
-    }
+    const std::optional<double> growth = memory.Growth();
+    if (!options_.soak.empty() && growth) memory_growth = *growth / MostBytes();
     std::vector<bench::RunRow> rows;
-    for (std::optional<bench::RunRow>& row : done) {
-      if (row) rows.push_back(std::move(*row));
+    for (const std::string& text : done) {
+      if (text.empty()) continue;
+      rows.push_back(std::move(bench::ParseValidationCsv(text, "a row").front()));
     }
     for (auto& [name, row] : before) rows.push_back(std::move(row));
     return rows;

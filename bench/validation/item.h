@@ -45,8 +45,9 @@ struct ItemFinding {
 struct Evidence {
   const scenarios::Scenario& scenario;  ///< as asked for
   const std::vector<RunRow>& rows;
-  /// How much more memory the program took at the end of a soak than after its first tenth, as a
-  /// share; none: there was no soak.
+  /// How much more the program held between episodes at the end of a soak than in its first tenth,
+  /// beside the rows, as a share of the most it ever had; none: there was no soak, or not to its
+  /// end.
   std::optional<double> memory_growth = {};
 };
 

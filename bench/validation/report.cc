@@ -191,8 +191,9 @@ std::string ValidationCsv(const std::vector<RunRow>& rows) {
   return csv.text();
 }
 
-std::vector<RunRow> ReadValidationCsv(const std::string& path) {
-  const CsvFile file = ReadCsv(path);
+namespace {
+
+std::vector<RunRow> RowsIn(const CsvFile& file, const std::string& path) {
   const Factors factors = FactorsOf(ValidationCase());
   for (const char* const column : {"case", "outcome", "error", "command"}) {
     if (std::find(file.columns.begin(), file.columns.end(), column) != file.columns.end()) continue;
@@ -217,6 +218,16 @@ std::vector<RunRow> ReadValidationCsv(const std::string& path) {
     }
   }
   return rows;
+}
+
+}  // namespace
+
+std::vector<RunRow> ReadValidationCsv(const std::string& path) {
+  return RowsIn(ReadCsv(path), path);
+}
+
+std::vector<RunRow> ParseValidationCsv(const std::string& text, const std::string& name) {
+  return RowsIn(ParseCsv(text, name), name);
 }
 
 }  // namespace sidestep::bench

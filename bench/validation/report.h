@@ -39,5 +39,7 @@ std::string ValidationJson(const ValidationTitle& title, const std::vector<Judge
 std::string ValidationCsv(const std::vector<RunRow>& rows);
 /// The rows of such a file. @throws InputError FILE:LINE: WHY.
 std::vector<RunRow> ReadValidationCsv(const std::string& path);
+/// The same of its text. @param name stands for the file in messages.
+std::vector<RunRow> ParseValidationCsv(const std::string& text, const std::string& name);
 
 }  // namespace sidestep::bench
