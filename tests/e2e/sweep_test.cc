@@ -92,6 +92,14 @@ TEST_F(SweepTest, SaysBeforeTheWorkWhatCannotBeRun) {
   EXPECT_FALSE(fs::exists(OutOf("none")));
 }
 
+TEST_F(SweepTest, OfAHundredThousandShortRunsIsPlanned) {
+  const Finished plan = RunProgram({SIDESTEP_PROGRAM, "sweep", "plan",
+                                    SIDESTEP_SOURCE_DIR "/tests/data/many_runs/many_runs.yaml"});
+  EXPECT_EQ(plan.exit_code, 0) << plan.err;
+  EXPECT_THAT(plan.out, HasSubstr("100000 runs: 4 combinations, each with 25000 seeds"));
+  EXPECT_THAT(plan.out, HasSubstr("all can be run"));
+}
+
 TEST_F(SweepTest, ComesToTheSameResultsHoweverItIsDividedAndWhoeverIsKilled) {
   const Finished one = Sweep("run", "one", {"-j", "1"});
   ASSERT_EQ(one.exit_code, 0) << one.err;
