@@ -61,7 +61,8 @@ render::Image WithAxes(const render::Image& slice, const SliceExtent& extent,
   ForEachTick(extent.y_low_m, extent.y_high_m, height, [&](int pixel, const std::string& label) {
     const int y = top + height - 1 - pixel;
     image.Fill({kPlotLeft - kTick, y, kTick, 1}, kInk);
-    font.Draw(image, kPlotLeft - kTick - kGap - font.Width(label, kLetters), y - kLetters / 2,
+    const int half_letter = kLetters / 2;
+    font.Draw(image, kPlotLeft - kTick - kGap - font.Width(label, kLetters), y - half_letter,
               kLetters, kInk, label);
   });
   font.Draw(image, kGap, top + height + kTick + kGap, kLetters, kInk, "m");

@@ -313,10 +313,11 @@ void Supervisor::JudgeStop(double period_s) {
 // Not only what gets faster until its acceleration is taken back: where joints make up for each
 // other, the tool gets faster when one of them comes to rest before the other.
 double Supervisor::FastestOnStop_m_s(const JointPoint& next, double period_s) {
-  constexpr double kStep = 8, kMost = 96;  // ticks; by then all of them get slower
+  constexpr int kStep = 8, kMost = 96;  // ticks; by then all of them get slower
   double fastest_m_s = 0;
   JointVector from = next.q;
-  for (double after = kStep; after < std::min(stop_ticks_, kMost) + kStep; after += kStep) {
+  const double end = std::min<double>(stop_ticks_, kMost) + kStep;
+  for (int after = kStep; after < end; after += kStep) {
     const JointVector to = OnStop(after);
     fastest_m_s = std::max(fastest_m_s, tool_gate_.SpeedBetween(from, to, kStep * period_s));
     from = to;

@@ -63,7 +63,8 @@ bool TagTrack::Try(Filter* filter, const Seen& seen, Verdict* verdict) const {
 TagTrack::Verdict TagTrack::Challenge(const Seen& seen) {
   Verdict verdict;
   if (challenger_ && Try(&*challenger_, seen, &verdict)) return verdict;
-  Filter& first = challenger_.emplace();
+  challenger_ = Filter();
+  Filter& first = *challenger_;
   first.t = seen.t;
   first.turn = seen.turn;
   first.estimate.p_W = seen.p_W;

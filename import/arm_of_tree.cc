@@ -222,7 +222,7 @@ class Maker {
   // Of the shape of its hulls, and of boxes around other solids.
   bool GiveWeight(const std::vector<int>& links) {
     for (const int number : links) {
-      robot::ArmLink& link = arm_.links[static_cast<std::size_t>(number + 1)];
+      robot::ArmLink& link = arm_.links[static_cast<std::size_t>(number) + 1];
       if (link.solids.empty()) continue;
       Eigen::AlignedBox3d box;
       double volume_m3 = 0;
