@@ -90,11 +90,14 @@ void TagSensor::CheckReferences(const robot::Frame& frame, const std::vector<Tag
     const std::optional<BodyPose> pose =
         LocateBody(frame.camera, reference.body, tags, options_.edge_sigma_px);
     if (!pose || pose->reprojection_px > options_.most_reprojection_px) continue;
-    const double drift_m =
-        (options_.X_WC * pose->X_CO.translation() - reference.X_WO.translation()).norm();
-    const double sigma_m = LargestSigma(pose->covariance.topLeftCorner<3, 3>());
-    // What is seen badly proves nothing.
-    if (3 * sigma_m > options_.most_drift_m || drift_m <= farthest_m) continue;
+    const Eigen::Vector3d drift =
+        options_.X_WC * pose->X_CO.translation() - reference.X_WO.translation();
+    const double drift_m = drift.norm();
+    if (drift_m <= farthest_m) continue;
+    // What is seen badly that way proves nothing.
+    const Eigen::Matrix3d C_m2 = InWorld(pose->covariance, options_.X_WC).topLeftCorner<3, 3>();
+    const double sigma_m = std::sqrt(drift.dot(C_m2 * drift)) / drift_m;
+    if (3 * sigma_m > options_.most_drift_m) continue;
     farthest_m = drift_m;
     of = reference.body.name;
   }

@@ -342,7 +342,7 @@ const std::vector<ModuleRule>& ModuleRules() {
       {"cli",
        {"core", "record", "robot", "sdf", "planner", "control", "scenarios", "sim", "hardware",
         "bench", "render", "import"},
-       {"CLI/", "nlohmann/", "gnu/libc-version.h", "elf.h", "link.h", "fmt/"}},
+       {"CLI/", "nlohmann/", "gnu/libc-version.h", "elf.h", "link.h", "malloc.h", "fmt/"}},
   };
   return rules;
 }
