@@ -14,7 +14,8 @@ double HeldBytes() {
 MemoryWatch::MemoryWatch(int count) : count_(count), tenth_(std::max(1, count / 10)) {}
 
 void MemoryWatch::Count(double bytes) {
-  if (done_ < tenth_) first_ = std::min(first_.value_or(bytes), bytes);
+  const bool is_second_tenth = done_ >= tenth_ && done_ < 2 * tenth_;
+  if (is_second_tenth) first_ = std::min(first_.value_or(bytes), bytes);
   if (done_ >= count_ - tenth_) last_ = std::min(last_.value_or(bytes), bytes);
   ++done_;
 }

@@ -9,7 +9,8 @@ double HeldBytes();
 
 /// Whether a program that does the same work again and again holds ever more. It holds much while
 /// it works and little in between, now more and now less: what counts is the least that it held
-/// when pieces of work had just been done, in the first tenth of them and in the last.
+/// when pieces of work had just been done, in the second tenth of them (in the first it makes what
+/// it keeps for good) and in the last.
 class MemoryWatch {
  public:
   /// @param count of the pieces of work.

@@ -85,6 +85,10 @@ double MostBytes() {
   return 1024 * static_cast<double>(usage.ru_maxrss);
 }
 
+bool IsSoak(const bench::ValidationCase& one) {
+  return one.group == bench::validation_group::kSoak;
+}
+
 bench::ValidationSubject SubjectOf(const ValidateOptions& options, const DataPaths& paths) {
   CheckWords("PLANNER", {options.planner}, planner::PlannerNames());
   Overrides overrides;
@@ -137,7 +141,7 @@ class Validation {
     for (const std::string& setting : options_.settings)
       command += " --set " + ShellQuoted(setting);
     for (const std::string& folder : options_.models) command += " --models " + ShellQuoted(folder);
-    if (one.group == bench::validation_group::kSoak) {
+    if (IsSoak(one)) {
       command += " --soak " + std::to_string(one.draw);
     } else if (one.draw > 2) {
       command += " --seeds " + std::to_string(one.draw);
@@ -253,8 +257,8 @@ class Validation {
 
   // In the order of the cases, and what was there before and is no case now; those that were not
   // run to their end are left out.
-  // @param memory_growth from the first tenth to the last, if there is a soak, as a share of the
-  // most that the program had.
+  // @param memory_growth of a soak (cli/memory_watch.h), as a share of the most that the program
+  // had.
   std::vector<bench::RunRow> RunCases(std::map<std::string, bench::RunRow> before,
                                       const StopSignals& signals,
                                       std::optional<double>& memory_growth) const {
@@ -271,7 +275,11 @@ class Validation {
       before.erase(found);
       ++num_done;
     }
-    MemoryWatch memory(count - num_done);
+    int num_soaked = 0;
+    for (std::size_t i = 0; i < cases_.size(); ++i) {
+      num_soaked += IsSoak(cases_[i]) && done[i].empty() ? 1 : 0;
+    }
+    MemoryWatch memory(num_soaked);
     if (num_done > 0) PrintError("{} of {} episodes, from before\n", num_done, count);
     bench::RunTasks(count, options_.jobs, [&](int i) {
       if (signals.count() > 0 || !done[static_cast<std::size_t>(i)].empty()) return;
@@ -285,14 +293,14 @@ class Validation {
       const std::lock_guard lock(telling);
       kept_bytes += static_cast<double>(text.capacity());
       done[static_cast<std::size_t>(i)] = std::move(text);
-      memory.Count(HeldBytes() - kept_bytes);
+      if (IsSoak(one)) memory.Count(HeldBytes() - kept_bytes);
       const int percent = 100 * ++num_done / count;
       if (percent / 10 == told / 10) return;
       told = percent;
       PrintError("{} of {} episodes\n", num_done, count);
     });
     const std::optional<double> growth = memory.Growth();
-    if (!options_.soak.empty() && growth) memory_growth = *growth / MostBytes();
+    if (growth) memory_growth = *growth / MostBytes();
     std::vector<bench::RunRow> rows;
     for (const std::string& text : done) {
       if (text.empty()) continue;

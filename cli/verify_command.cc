@@ -137,8 +137,9 @@ class Verification {
       }
     }
     recorded.factors["seed"] = recorded.values["seed"];
-    bench::SqlStatement setup = database_.sql().Prepare(
-        "SELECT setup FROM experiments WHERE id = " + recorded.values["experimentid"]);
+    bench::SqlStatement setup =
+        database_.sql().Prepare("SELECT setup FROM experiments WHERE id = ?");
+    setup.Bind(1, recorded.values["experimentid"]);
     if (!setup.Step() || setup.Text(0).empty()) {
       throw InputError(options_.database,
                        "does not say how run " + std::to_string(id) + " is made again");

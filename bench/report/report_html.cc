@@ -73,6 +73,11 @@ std::string TableHtml(const std::vector<std::vector<std::string>>& rows_html,
   std::string text = "<div class=\"scroll\"><table>\n";
   const char* tag = "th";
   for (const std::vector<std::string>& row : rows_html) {
+    if (row.size() == 1 && rows_html.front().size() > 1) {
+      text += fmt::format("<tr><td class=\"across\" colspan=\"{}\">{}</td></tr>\n",
+                          rows_html.front().size(), row.front());
+      continue;
+    }
     text += "<tr>";
     for (std::size_t c = 0; c < row.size(); ++c) {
       const bool has_class = c < column_classes.size() && !column_classes[c].empty();

@@ -20,7 +20,8 @@ std::string Paragraph(const std::string& text_html, const std::string& css_class
 std::string FigureHtml(const Panel& panel, const std::string& caption);
 /// A name as HTML that may be broken after its underscores.
 std::string Breakable(const std::string& name);
-/// The first row is its head. Cells are HTML.
+/// The first row is its head. Cells are HTML. A row of one cell in a table of several columns goes
+/// across all of them, and belongs to the row above.
 std::string TableHtml(const std::vector<std::vector<std::string>>& rows_html,
                       const std::vector<std::string>& column_classes = {});
 /// A command with a button that copies it.

@@ -431,7 +431,7 @@ class Page {
       factors += ", " + SqlName(factor.column);
       head.push_back(Escaped(factor.name));
     }
-    head.insert(head.end(), {"seed", "clearance [mm]", "again"});
+    head.insert(head.end(), {"seed", "clearance [mm]"});
     SqlStatement run = database_.sql().Prepare(
         "SELECT id, outcome, coalesce(nullif(touched, ''), nullif(error, ''), ''), seed, "
         "min_clearance_m, command, trace" +
@@ -439,8 +439,8 @@ class Page {
         " FROM results WHERE outcome <> 'goal' ORDER BY outcome, min_clearance_m, id LIMIT " +
         std::to_string(kMostFailuresListed));
     std::vector<std::vector<std::string>> rows = {head};
-    std::vector<std::string> classes = {"", "text", "wrap"};
-    while (run.Step()) {
+    std::int64_t listed = 0;
+    for (; run.Step(); ++listed) {
       std::vector<std::string>& row = rows.emplace_back();
       const std::string outcome = run.Text(1);
       row = {run.Text(0),
@@ -451,20 +451,20 @@ class Page {
       }
       row.push_back(run.Text(3));
       row.push_back(FiniteText("{:.1f}", 1e3 * run.Number(4), "–"));
-      row.push_back((run.IsNull(5) ? "–" : CommandHtml(run.Text(5))) + ViewCommand(run.Text(6)));
+      const std::string again =
+          (run.IsNull(5) ? "" : CommandHtml(run.Text(5))) + ViewCommand(run.Text(6));
+      if (!again.empty()) rows.push_back({again});
     }
-    classes.resize(head.size());
-    classes.back() = "text";
     const auto all = static_cast<std::size_t>(
         std::count_if(runs_.outcome.begin(), runs_.outcome.end(), [&](int outcome) {
           return runs_.outcomes[static_cast<std::size_t>(outcome)] != ToString(Outcome::kGoal);
         }));
-    const std::string which = all > rows.size() - 1
-                                  ? fmt::format("{} of {} runs", rows.size() - 1, all)
-                                  : fmt::format("{} runs", rows.size() - 1);
-    body_ += "<details" + std::string(rows.size() <= 25 ? " open" : "") + "><summary>" +
+    const std::string which = static_cast<std::int64_t>(all) > listed
+                                  ? fmt::format("{} of {} runs", listed, all)
+                                  : fmt::format("{} runs", listed);
+    body_ += "<details" + std::string(listed <= 24 ? " open" : "") + "><summary>" +
              Escaped("Each of them, and how to run it again (" + which + ")") + "</summary>\n" +
-             TableHtml(rows, classes) + "</details>\n";
+             TableHtml(rows, {"", "text", "wrap"}) + "</details>\n";
     body_ += Paragraph("Videos of the worst of them, where their traces are kept:", "note") +
              CommandHtml(
                  "sidestep render --from " + request_.database +

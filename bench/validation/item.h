@@ -45,7 +45,7 @@ struct ItemFinding {
 struct Evidence {
   const scenarios::Scenario& scenario;  ///< as asked for
   const std::vector<RunRow>& rows;
-  /// How much more the program held between episodes at the end of a soak than in its first tenth,
+  /// How much more the program held between episodes at the end of a soak than in its second tenth,
   /// beside the rows, as a share of the most it ever had; none: there was no soak, or not to its
   /// end.
   std::optional<double> memory_growth = {};

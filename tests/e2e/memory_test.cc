@@ -39,24 +39,20 @@ double LeftByAnEpisode(const std::string& planner, sim::ModelStore* store) {
     return bench::MakeEpisodeWorld(
         std::make_shared<sim::Simulation>(scenario, robot, kModels, &sim::MakeSensor, store));
   };
-  constexpr int kBefore = 4, kCounted = 40;  // what is made once is made by then
-  int seed = 0;
-  for (int i = 0; i < kBefore; ++i) RunOne(planner, ++seed, make_world);
+  constexpr int kCounted = 40;
   cli::MemoryWatch memory(kCounted);
-  for (int i = 0; i < kCounted; ++i) {
-    RunOne(planner, ++seed, make_world);
+  for (int seed = 1; seed <= kCounted; ++seed) {
+    RunOne(planner, seed, make_world);
     memory.Count(cli::HeldBytes());
   }
-  return memory.Growth().value() / (kCounted * 0.9);
+  return memory.Growth().value() / (kCounted * 0.8);
 }
 
 // What the allocator keeps for the next time comes and goes by some 20 kB.
 constexpr double kMostBytes = 1000;
 
 TEST(Episodes, LeaveNothingInMemory) {
-  for (const char* const planner : {"gpmp_fast", "straight_line"}) {
-    EXPECT_LE(LeftByAnEpisode(planner, nullptr), kMostBytes) << planner;
-  }
+  EXPECT_LE(LeftByAnEpisode("gpmp_fast", nullptr), kMostBytes);
 }
 
 TEST(Episodes, LeaveNothingInMemoryWhereTheirModelsAreKept) {
