@@ -20,9 +20,11 @@ constexpr Word kWords[] = {{UnseenSpace::kFree, "free"},
                            {UnseenSpace::kRemembered, "remembered"}};
 
 // What the rays of a scan say of a cell, together.
-constexpr std::uint8_t kPassed = 1, kHit = 2, kDoubted = 4;
+constexpr std::uint8_t kPassed = 1, kHit = 2, kDoubted = 4, kRests = 8;
 
 constexpr int kMostSettleScans = 10000;
+
+constexpr int kRestingScans = 15;  // what a ray has seen unchanged for so long rests
 
 constexpr float kRounding = 1e-4F;  // of sums of log-odds
 
@@ -102,6 +104,7 @@ void EvidenceMap::Update(const Scan& scan) {
     in_view = static_cast<std::uint8_t>(mark != 0 ? in_view | bit : in_view & ~bit);
     if ((mark & kHit) != 0) {
       Hit(cells_[index], index, camera);
+      if ((mark & kRests) != 0) Settle(cells_[index], index);
     } else if ((mark & kDoubted) != 0) {
       cells_[index].hit_by &= static_cast<std::uint8_t>(~bit);
     } else if (mark != 0) {
@@ -140,17 +143,18 @@ void EvidenceMap::Trace(const Scan& scan, Camera& camera) {
     // Noise moves a point along its ray by so much for each metre of depth.
     const double deviation_m =
         camera.view.noise_per_m * std::abs(p_CP.z()) * p_CP.norm() / std::sqrt(mean.count);
-    TracePoint(p_WCamera, p_WCamera + R_WC * p_CP, options_.noise_sigmas * deviation_m,
-               !mean.has_jumped);
+    TracePoint(p_WCamera, p_WCamera + R_WC * p_CP, options_.noise_sigmas * deviation_m, mean);
   }
 }
 
 void EvidenceMap::TracePoint(const Eigen::Vector3d& p_WCamera, const Eigen::Vector3d& p_WPoint,
-                             double doubt_m, bool spares) {
+                             double doubt_m, const SteadyDepths::Mean& mean) {
   const GridSpec& grid = filled_.spec;
   const Eigen::Vector3d way = p_WPoint - p_WCamera;
   const double far_m = way.norm();
   const std::size_t end = IndexOf(grid, p_WPoint);
+  const bool spares = !mean.has_jumped;
+  const auto hit = static_cast<std::uint8_t>(mean.count >= kRestingScans ? kHit | kRests : kHit);
   if (doubt_m == 0) {
     VisitCellsOnLine(grid, p_WCamera, p_WPoint, [&](std::size_t cell, double, double) {
       if (cell == end) return false;
@@ -158,7 +162,7 @@ void EvidenceMap::TracePoint(const Eigen::Vector3d& p_WCamera, const Eigen::Vect
       return true;
     });
     if (end == kOutside) return;
-    marks_[end] |= kHit;
+    marks_[end] |= hit;
     if (!Attracts(end)) new_cells_.push_back(end);
     return;
   }
@@ -182,12 +186,12 @@ void EvidenceMap::TracePoint(const Eigen::Vector3d& p_WCamera, const Eigen::Vect
                      return true;
                    });
   if (end != kOutside && filled_.cells[end] != 0) {
-    marks_[end] |= kHit;
+    marks_[end] |= hit;
     if (!Attracts(end)) new_cells_.push_back(end);
   } else if (attractor != kOutside) {
-    marks_[attractor] |= kHit;
+    marks_[attractor] |= hit;
   } else if (end != kOutside) {
-    marks_[end] |= kHit;
+    marks_[end] |= hit;
     new_cells_.push_back(end);
   }
 }
@@ -222,6 +226,12 @@ void EvidenceMap::Hit(Cell& cell, std::size_t index, const Camera& camera) {
   const bool is_filled = cell.log_odds > kRounding;
   filled_.cells[index] = is_filled ? 1 : 0;
   if (is_filled && !IsSettled(cell)) ++cell.hits;
+}
+
+void EvidenceMap::Settle(Cell& cell, std::size_t index) {
+  if (filled_.cells[index] == 0) return;
+  cell.hits = static_cast<std::uint16_t>(options_.settle_scans);
+  once_free_[index] = 0;
 }
 
 void EvidenceMap::Pass(Cell& cell, std::size_t index, const Camera& camera) {

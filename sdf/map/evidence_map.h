@@ -77,8 +77,9 @@ class EvidenceMap {
   /// Not 0 for each cell that the latest scan of any camera has looked at, in the same order.
   const std::vector<std::uint8_t>& seen() const { return in_view_; }
 
-  /// 1 for each cell that has ever been known to be free, in the same order: what is
-  /// filled there has come, and what is filled elsewhere may have been there all the time.
+  /// 1 for each cell that has been known to be free since something rested there, in the same
+  /// order: what is filled there has come, and what is filled elsewhere may have been there all the
+  /// time. Something rests where a ray has seen it unchanged for half a second at 30 Hz.
   const std::vector<std::uint8_t>& once_free() const { return once_free_; }
 
  private:
@@ -99,14 +100,16 @@ class EvidenceMap {
   Camera& Find(const std::string& name);
   void Trace(const Scan& scan, Camera& camera);
   bool IsSettled(const Cell& cell) const { return cell.hits >= options_.settle_scans; }
-  // @param spares whether other rays do not free cells where this one may have ended either. What
-  // has come is no reason to: where it was before would stay filled the longer.
+  // @param mean of the ray: where it sees what it has seen for longest, other rays do not free
+  // cells where it may have ended either. What has come is no reason to: where it was before would
+  // stay filled the longer.
   void TracePoint(const Eigen::Vector3d& p_WCamera, const Eigen::Vector3d& p_WPoint, double doubt_m,
-                  bool spares);
+                  const SteadyDepths::Mean& mean);
   // Whether what is filled in a cell explains points that noise has put nearby.
   bool Attracts(std::size_t cell) const;
   void BelieveAtOnce();
   void Hit(Cell& cell, std::size_t index, const Camera& camera);
+  void Settle(Cell& cell, std::size_t index);
   void Pass(Cell& cell, std::size_t index, const Camera& camera);
   void Overlook(Cell& cell, std::size_t index, const Camera& camera, double decay);
 

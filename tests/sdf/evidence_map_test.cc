@@ -196,6 +196,27 @@ TEST(EvidenceMap, DoesNotSayThatSpaceIsFreeWhereANoisyRayMayHaveEnded) {
   }
 }
 
+// Something comes, and stays: its cells were known to be free.
+TEST(EvidenceMap, TakesWhatARayHasSeenUnchangedForLongForWhatRests) {
+  EvidenceOptions options = Weighed();
+  options.settle_scans = 60;
+  options.average_scans = 60;
+  EvidenceMap map(kGrid, options, {{"camera", {UnseenSpace::kRemembered, 0.002}}});
+  const std::size_t cell = CellAt({1.05, 0.05, 0.05});
+  for (int n = 0; n < 40; ++n) {
+    Scan scan = Seen(Square(n < 10 ? 2.05 : 1.05, 4), {}, n / 30.0);
+    for (int ray = 0; ray < scan.p_CP.cols(); ++ray) scan.rays.push_back(ray);
+    map.Update(scan);
+    if (n < 9) continue;
+    if (n == 9) {
+      EXPECT_NE(map.once_free()[cell], 0);
+      continue;
+    }
+    EXPECT_NE(map.filled().cells[cell], 0) << n;
+    EXPECT_EQ(map.once_free()[cell] != 0, n < 24) << n;
+  }
+}
+
 TEST(EvidenceMap, SeesWhatStandsClearOfTheNoiseBeforeAWall) {
   EvidenceMap map(kGrid, Weighed(), {{"camera", {UnseenSpace::kRemembered, 0.002}}});
   for (int n = 0; n < 20; ++n) map.Update(Seen(Square(2.05, 4), {}, n / 30.0));
