@@ -1,3 +1,4 @@
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -35,6 +36,7 @@ constexpr const char* kScenario = "hsr_walkway";
 void WriteRuns(const ClosedLoopCommand& command, bench::ClosedLoopStudy& study,
                const std::string& out) {
   const bench::Factors settings = bench::PublishedSettings(command.options.speed_m_s);
+  const std::map<std::string, std::string> machine = Machine();
   std::vector<bench::SingleRun> runs;
   for (const bench::RunRow& row : study.rows) {
     bench::SingleRun& run = runs.emplace_back();
@@ -43,7 +45,7 @@ void WriteRuns(const ClosedLoopCommand& command, bench::ClosedLoopStudy& study,
     all.insert(row.factors.begin(), row.factors.end());
     run.row.command = RunCommandOf(kScenario, all);
     run.scenario = run.setup = kScenario;
-    run.machine = Machine();
+    run.machine = machine;
   }
   std::size_t n = 0;
   for (bench::EpisodeResult* const result : {&study.update, &study.prediction}) {

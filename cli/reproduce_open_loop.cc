@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -92,7 +93,8 @@ void PrintVerdicts(const bench::OpenLoopStudy& study) {
 void WriteRuns(const bench::OpenLoopExperiment& experiment, const bench::OpenLoopStudy& study,
                const bench::OpenLoopStudyOptions& options, const std::string& out) {
   std::vector<bench::SingleRun> runs = bench::OpenLoopRuns(experiment, study, options.predictor);
-  for (bench::SingleRun& run : runs) run.machine = Machine();
+  const std::map<std::string, std::string> machine = Machine();
+  for (bench::SingleRun& run : runs) run.machine = machine;
   const bench::RunFilesHead head = {
       {{"title", experiment.name},
        {"description",

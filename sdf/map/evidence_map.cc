@@ -153,7 +153,6 @@ void EvidenceMap::TracePoint(const Eigen::Vector3d& p_WCamera, const Eigen::Vect
   const Eigen::Vector3d way = p_WPoint - p_WCamera;
   const double far_m = way.norm();
   const std::size_t end = IndexOf(grid, p_WPoint);
-  const bool spares = !mean.has_jumped;
   const auto hit = static_cast<std::uint8_t>(mean.count >= kRestingScans ? kHit | kRests : kHit);
   if (doubt_m == 0) {
     VisitCellsOnLine(grid, p_WCamera, p_WPoint, [&](std::size_t cell, double, double) {
@@ -177,9 +176,10 @@ void EvidenceMap::TracePoint(const Eigen::Vector3d& p_WCamera, const Eigen::Vect
                        if (cell != end) marks_[cell] |= kPassed;
                        return true;
                      }
-                     if (spares && enter < at_end) marks_[cell] |= kDoubted;
+                     if (!mean.has_jumped && enter < at_end) marks_[cell] |= kDoubted;
                      const double off = std::max({0.0, enter - at_end, at_end - leave});
-                     if (off < nearest && Attracts(cell)) {
+                     if (off > nearest) return false;  // it only gets farther
+                     if (Attracts(cell)) {
                        attractor = cell;
                        nearest = off;
                      }

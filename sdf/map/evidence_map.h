@@ -36,14 +36,15 @@ struct EvidenceOptions {
   /// the bounds. A cell is filled while its sum is > 0, and known to be free at `least`.
   double hit = 2, miss = 2, least = -1, most = 1;
   /// So many scans that hit a cell while it is filled settle it, until it is free: what is there
-  /// rests.
+  /// rests. So does at once what the end of a ray that is averaged over 15 scans hits.
   int settle_scans = 1;
   /// What a filled cell that has not settled loses while the camera that saw it last does not see
   /// it.
   double decay_per_s = 0;
   /// A point that is within so many standard deviations, along its ray, of a cell that was filled
   /// before anything moved there says nothing new: it is a hit of that cell. And no ray says that
-  /// cells are free so near to its end.
+  /// cells are free so near to its end; nor so near before the end of another of its scan, if that
+  /// one sees what it has seen for longest.
   double noise_sigmas = 0;
   /// What a ray measures is averaged over so many scans for as long as it stays the same, where the
   /// scans say which ray is which; 1: it is not. Noise counts the less for it.

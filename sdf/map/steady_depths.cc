@@ -33,10 +33,12 @@ SteadyDepths::Mean SteadyDepths::Take(int ray, double depth_m, double deviation_
   const auto off = [&](const Mean& mean) {
     return (depth_m - mean.depth_m) / (deviation_m * std::sqrt(1 + 1.0 / mean.count));
   };
-  known.drift += kNewest * (off(known.mean) - known.drift);
-  if (std::abs(off(known.mean)) > kMostOff) {
-    if (known.mean.count >= known.before.count)
+  const double off_mean = off(known.mean);
+  known.drift += kNewest * (off_mean - known.drift);
+  if (std::abs(off_mean) > kMostOff) {
+    if (known.mean.count >= known.before.count) {
       known.before = {known.mean.depth_m, known.mean.count, false};
+    }
     const bool is_back = std::abs(off(known.before)) <= kMostOff;
     known.mean = is_back ? known.before : Mean{depth_m, 0, true};
     known.drift = 0;
