@@ -17,6 +17,7 @@ namespace {
 constexpr const char* kBraked = "braked";
 constexpr int kMinFreeStates = 3;        // fewer leave nothing to choose
 constexpr double kOffPlan_rad = 0.1;     // a robot this far from its plan does not follow it
+constexpr double kSlower = 1.5;          // from a horizon that is too short to the next one
 constexpr double kStill_rad_s = 0.01;    // what is measured of a robot at rest is noise below this
 constexpr double kArrivesLate_s = 0.5;   // an arm lags its plan by less, or does not arrive by it
 constexpr double kRecordStep_s = 0.1;    // between the recorded positions of a predicted object
@@ -102,6 +103,10 @@ class CycleWork {
   // A whole horizon from `start`.
   PlanRequest NewHorizon(EpisodeTime start, const Eigen::VectorXd& q,
                          const Eigen::VectorXd& v) const;
+  // Of a horizon from t_effect in which the rest of a plan that answers `request` keeps limits of
+  // which it takes `limit_share`, if it is gone the same way; and of the next one to try, if not.
+  int StatesSlowedDown(const PlanRequest& request, double limit_share) const;
+  int Slower(int num_states) const;
   // A whole horizon from `start`: comes to rest, and stays.
   TimedPlan Brake() const;
 
@@ -142,10 +147,11 @@ CycleResult CycleWork::Run() const {
     return result;
   };
   // Not worth beginning once all is spent: then the next cycle keeps something for it.
-  const auto plan_anew = [&]() -> std::optional<PlanResult> {
+  const auto plan_anew = [&](int num_states) -> std::optional<PlanResult> {
     if (!task_.budget.IsSpent(spent)) {
-      return plan(NewHorizon(t_effect_, expected_.q, expected_.v), &CycleSearches::anew,
-                  task_.budget.WhatIsLeft(spent));
+      PlanRequest anew = NewHorizon(t_effect_, expected_.q, expected_.v);
+      anew.num_states = num_states;
+      return plan(std::move(anew), &CycleSearches::anew, task_.budget.WhatIsLeft(spent));
     }
     if (task_.searches.anew.cut_short) cycle.searches.anew = task_.searches.anew;
     cycle.searches.anew.cut_short = record.cut_short = true;
@@ -178,12 +184,20 @@ CycleResult CycleWork::Run() const {
              goes_on && task_.searches.anew.cut_short ? task_.budget.HalfOfWhatIsLeft(spent)
                                                       : task_.budget.WhatIsLeft(spent));
     // What is not finished may keep its limits once it is.
-    const bool wants_time = result.status == PlanStatus::kShortOfGoal ||
-                            (result.status == PlanStatus::kOverLimits && result.converged &&
-                             result.limit_share > kMuchTooFast);
+    const bool is_too_fast = result.status == PlanStatus::kOverLimits &&
+                             !result.progress.cut_short && result.limit_share > kMuchTooFast;
+    const bool wants_time = is_too_fast || result.status == PlanStatus::kShortOfGoal;
+    const double limit_share = result.limit_share;
     show(std::move(result), request->start);
     if (wants_time && running_ && request->start < t_effect_) {
-      std::optional<PlanResult> anew = plan_anew();
+      // Not all at once: with much time for what is left of a motion, an arm swings past the goal.
+      int num_states = is_too_fast ? StatesSlowedDown(*request, limit_share) : num_states_;
+      std::optional<PlanResult> anew = plan_anew(num_states);
+      while (anew && !IsAllThatWasAsked(anew->status) && num_states < num_states_) {
+        const bool is_still_too_fast = anew->status == PlanStatus::kOverLimits;
+        num_states = is_still_too_fast ? Slower(num_states) : num_states_;
+        anew = plan_anew(num_states);
+      }
       if (anew && IsAllThatWasAsked(anew->status)) show(*std::move(anew), t_effect_);
     }
     const bool has_to_flee =
@@ -191,7 +205,7 @@ CycleResult CycleWork::Run() const {
         (*clearance.first_contact - t_effect_).seconds() <= options_.flees_within_s;
     if (has_to_flee && running_) {
       if (request->start < t_effect_) {
-        std::optional<PlanResult> anew = plan_anew();
+        std::optional<PlanResult> anew = plan_anew(num_states_);
         if (anew && anew->trajectory && IsSafer(anew->clearance, clearance)) {
           show(*std::move(anew), t_effect_);
         }
@@ -247,8 +261,9 @@ std::optional<PlanRequest> CycleWork::MakeRequest() const {
 
   const Trajectory& running = running_->trajectory;
   const int num_fixed = CountFixed(running_->start, options_.step_s, t_effect_);
-  if (num_states_ - num_fixed >= kMinFreeStates && !task_.is_braking) {
+  if (running.num_states() - num_fixed >= kMinFreeStates && !task_.is_braking) {
     PlanRequest request = NewHorizon(running_->start, running.q.col(0), running.v.col(0));
+    request.num_states = running.num_states();
     request.initial = running;
     request.num_fixed = num_fixed;
     return request;
@@ -307,6 +322,17 @@ PlanRequest CycleWork::NewHorizon(EpisodeTime start, const Eigen::VectorXd& q,
   request.v_start = v;
   request.q_goal = options_.q_goal;
   return request;
+}
+
+int CycleWork::StatesSlowedDown(const PlanRequest& request, double limit_share) const {
+  const EpisodeTime end = request.start + HorizonOffset((request.num_states - 1) * request.step_s);
+  const double left_s = std::max(0.0, (end - t_effect_).seconds());
+  const auto num_steps = static_cast<int>(std::ceil(left_s * limit_share / request.step_s));
+  return std::clamp(num_steps + 1, std::min(kMinFreeStates + 1, num_states_), num_states_);
+}
+
+int CycleWork::Slower(int num_states) const {
+  return std::min(num_states_, static_cast<int>(std::ceil(kSlower * num_states)));
 }
 
 TimedPlan CycleWork::Brake() const {

@@ -82,11 +82,12 @@ struct CycleResult {
 ///
 /// A plan is taken if it is predicted to be free. If it is, but, finished, exceeds a limit that it
 /// was asked to keep by more than 5 % or ends short of a goal that is blocked, a new horizon is
-/// tried as well, which has more time, and taken if it does neither. If the plan is not free, two
-/// ways out are weighed: a new horizon to the goal, which may have more time and begins with
-/// another guess; and to brake (see braking.h) and wait. Then the safest is taken (see
-/// clearance.h), and none if going on with what runs is as safe. A robot that brakes or waits looks
-/// for new horizons alone.
+/// tried as well, which has more time, and taken if it does neither: where a limit is exceeded,
+/// first one that is no longer than what is left takes slowed down by as much, else a whole one. If
+/// the plan is not free, two ways out are weighed: a new horizon to the goal, which may have more
+/// time and begins with another guess; and to brake (see braking.h) and wait. Then the safest is
+/// taken (see clearance.h), and none if going on with what runs is as safe. A robot that brakes or
+/// waits looks for new horizons alone.
 ///
 /// All searches share the budget. Whether the robot may stay at its goal is not worth more than
 /// half of it; nor, where the cycle before came to a new horizon too late, is going on from what

@@ -175,13 +175,14 @@ PlanAnswer SeededPlanner::TryAll(const PlanRequest& request, PlanJudge& judge) c
   Search search(*this, request, judge);
   Seeds seeds(request, gp_.num_detours, robot::ToleranceScale(robot()));
   std::optional<Candidate> taken_up = search.TakeUp();
-  const int first = taken_up ? request.progress.next_seed % seeds.count() : 0;
-  Candidate best =
-      taken_up ? *std::move(taken_up)
-               : search.Solve(seeds.Make(0), request.initial ? Stages::kWithLimits : Stages::kBoth);
+  const bool is_taken_up = taken_up.has_value();
+  const int first = is_taken_up ? request.progress.next_seed % seeds.count() : 0;
+  Candidate best = is_taken_up ? *std::move(taken_up)
+                               : search.Solve(seeds.Make(0), request.initial ? Stages::kWithLimits
+                                                                             : Stages::kBoth);
   // What runs is not given up for what exceeds a limit or touches something, if it does neither;
   // but for much more clearance at a little more speed.
-  if (request.initial && !taken_up && !(best.verdict.is_free() && best.verdict.keeps_limits)) {
+  if (request.initial && !is_taken_up && !(best.verdict.is_free() && best.verdict.keeps_limits)) {
     Candidate running = search.LeaveAsItIs(MakeWarmStart(request));
     const bool is_worth_it =
         best.verdict.is_free() && best.verdict.limit_share < kMuchTooFast &&
@@ -198,7 +199,7 @@ PlanAnswer SeededPlanner::TryAll(const PlanRequest& request, PlanJudge& judge) c
     }
   }
   SearchProgress progress;
-  for (int i = taken_up ? 0 : 1; i < seeds.count(); ++i) {
+  for (int i = is_taken_up ? 0 : 1; i < seeds.count(); ++i) {
     const int seed = (first + i) % seeds.count();
     const bool is_good = best.verdict.is_free() &&
                          (request.initial || seeds.IsDetour(seed) || best.verdict.keeps_limits);

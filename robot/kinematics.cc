@@ -18,7 +18,8 @@ Kinematics::Kinematics(const std::vector<Joint>& joints) {
   movers_.emplace_back();
   for (const Joint& joint : joints) {
     // Where the joint's frame is in that of the row that carries it.
-    const LinkOnRow& parent = links_[static_cast<std::size_t>(joint.parent + 1)];
+    const int parent_link = joint.parent + 1;
+    const LinkOnRow& parent = links_[static_cast<std::size_t>(parent_link)];
     LinkOnRow at = parent;
     const Eigen::Matrix3d R_PJ = joint.X_PJ.rotation().toRotationMatrix();
     if (!R_PJ.isIdentity(0) || !joint.X_PJ.translation().isZero(0)) {

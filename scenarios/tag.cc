@@ -72,7 +72,8 @@ std::array<bool, kTagModules * kTagModules> BlackModules(int id) {
       const int rim = std::min({x, y, kTagModules - 1 - x, kTagModules - 1 - y});
       const int bit = 35 - (6 * (y - 2) + (x - 2));
       const bool is_black = rim == 1 || (rim > 1 && (code >> bit & 1) == 0);
-      black[static_cast<std::size_t>(kTagModules * y + x)] = is_black;
+      const int module = kTagModules * y + x;
+      black[static_cast<std::size_t>(module)] = is_black;
     }
   }
   return black;

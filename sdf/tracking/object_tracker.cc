@@ -38,7 +38,7 @@ constexpr double kLeastSeen = 0.1;
 constexpr double kLeftShare = 0.5;
 // If it has come so far besides, and is so many times the least: noise leaves what it is at.
 constexpr double kSurelyMovedCells = 3;
-constexpr int kSurelyAThing = 10;
+constexpr std::size_t kSurelyAThing = 10;
 
 // Things are in one piece if it fills so much of where each should be, and has so many cells of
 // what they have together.
@@ -559,7 +559,7 @@ bool ObjectTracker::MayHaveCome(const Component& component) const {
 // What comes from where nobody could see need not come to where nothing was; but it goes.
 bool ObjectTracker::HasLeft(const Track& track, const Component& component) const {
   const std::vector<std::size_t>& before = track.cells_at_start;
-  const auto least = static_cast<std::size_t>(kSurelyAThing * options_.least_cells);
+  const auto least = kSurelyAThing * static_cast<std::size_t>(options_.least_cells);
   if (before.size() < least || component.cells.size() < least) return false;
   const auto count = std::count_if(before.begin(), before.end(), [&](std::size_t cell) {
     return seen_[cell] != 0 &&

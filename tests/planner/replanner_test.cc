@@ -311,6 +311,40 @@ TEST(Replanner, TakesANewHorizonWhereThePlanExceedsALimitAndThatOneDoesNot) {
   }
 }
 
+TEST(Replanner, SlowsDownByAboutAsMuchAsALimitAsksFor) {
+  for (const double late_s : {2.0, 2.2, 2.4}) {
+    MovingBallWorld world = NothingThere();
+    Loop loop(world, std::make_unique<HastyPlanner>());
+    const Trajectory first = loop.Cycle(0, 0.1).record.plan;
+    const CycleResult next = loop.Cycle(late_s, 0.1);
+    EXPECT_EQ(next.record.status, "solved");
+    ASSERT_EQ(next.record.plan_start, EpisodeTime(late_s + 0.1));
+
+    const TrajectoryPoint from = Sample(first, HorizonOffset(late_s + 0.1));
+    const auto field = world.MakeField();
+    const auto keeps_limits = [&](int num_states) {
+      PlanRequest request;
+      request.field = field.get();
+      request.start = next.record.plan_start;
+      request.step_s = 0.1;
+      request.num_states = num_states;
+      request.q_start = from.q;
+      request.v_start = from.v;
+      request.q_goal = kGoal;
+      return HastyPlanner().Plan(request).status == PlanStatus::kSolved;
+    };
+    int least = 4;
+    while (!keeps_limits(least)) ++least;
+    EXPECT_GE(next.record.plan.num_states(), least);
+    EXPECT_LE(next.record.plan.num_states(), 2 * least);
+
+    // It ends there.
+    const double end_s = late_s + 0.1 + 0.1 * (next.record.plan.num_states() - 1);
+    EXPECT_EQ(loop.Cycle(end_s, 0.1).record.status, "kept");
+    EXPECT_TRUE(Sample(loop.plan()->trajectory, HorizonOffset(3)).q.isApprox(kGoal));
+  }
+}
+
 TEST(Replanner, BrakesBeforeWhatComesIfThePlannerFindsNone) {
   MovingBallWorld world = NothingThere();
   auto mine = std::make_unique<PlannerThatMayFail>();
