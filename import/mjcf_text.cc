@@ -227,8 +227,9 @@ std::vector<int> RigidBodies(const robot::ArmDescription& arm) {
   std::vector<int> bodies = {-1};
   for (std::size_t i = 0; i < arm.joints.size(); ++i) {
     const robot::Joint& joint = arm.joints[i];
+    const int parent_entry = joint.parent + 1;
     bodies.push_back(joint.kind == robot::JointKind::kFixed
-                         ? bodies[static_cast<std::size_t>(joint.parent + 1)]
+                         ? bodies[static_cast<std::size_t>(parent_entry)]
                          : static_cast<int>(i));
   }
   return bodies;
@@ -254,8 +255,8 @@ LinkPairs PairsWithoutContact(const robot::ArmDescription& arm, const LinkPairs&
       const int link = static_cast<int>(i);
       const int body = bodies[i + 1];
       if (body < 0 || arm.LinkOf(link).solids.empty()) continue;
-      const int parent = arm.joints[static_cast<std::size_t>(body)].parent;
-      if (bodies[static_cast<std::size_t>(parent + 1)] >= 0) continue;
+      const int parent_entry = arm.joints[static_cast<std::size_t>(body)].parent + 1;
+      if (bodies[static_cast<std::size_t>(parent_entry)] >= 0) continue;
       pairs.push_back({std::min(fixed, link), std::max(fixed, link)});
     }
   }

@@ -15,9 +15,11 @@ namespace sidestep::planner {
 namespace {
 
 constexpr const char* kBraked = "braked";
-constexpr int kMinFreeStates = 3;        // fewer leave nothing to choose
-constexpr double kOffPlan_rad = 0.1;     // a robot this far from its plan does not follow it
-constexpr double kSlower = 1.5;          // from a horizon that is too short to the next one
+constexpr int kMinFreeStates = 3;     // fewer leave nothing to choose
+constexpr double kOffPlan_rad = 0.1;  // a robot this far from its plan does not follow it
+constexpr double kSlower = 1.5;       // from a horizon that is too short to the next one
+constexpr double kWorthCatchingUp_s = 0.5;
+constexpr double kNotMuchNearer_m = 0.01;  // to what is there, for arriving sooner
 constexpr double kStill_rad_s = 0.01;    // what is measured of a robot at rest is noise below this
 constexpr double kArrivesLate_s = 0.5;   // an arm lags its plan by less, or does not arrive by it
 constexpr double kRecordStep_s = 0.1;    // between the recorded positions of a predicted object
@@ -107,6 +109,9 @@ class CycleWork {
   // which it takes `limit_share`, if it is gone the same way; and of the next one to try, if not.
   int StatesSlowedDown(const PlanRequest& request, double limit_share) const;
   int Slower(int num_states) const;
+  // Of a horizon from t_effect that is to what is left of the way, as the whole horizon is to all.
+  int StatesAtPace() const;
+  EpisodeTime EndOfNew(int num_states) const;
   // A whole horizon from `start`: comes to rest, and stays.
   TimedPlan Brake() const;
 
@@ -186,6 +191,7 @@ CycleResult CycleWork::Run() const {
     // What is not finished may keep its limits once it is.
     const bool is_too_fast = result.status == PlanStatus::kOverLimits &&
                              !result.progress.cut_short && result.limit_share > kMuchTooFast;
+    const bool is_calm = IsAllThatWasAsked(result.status);
     const bool wants_time = is_too_fast || result.status == PlanStatus::kShortOfGoal;
     const double limit_share = result.limit_share;
     show(std::move(result), request->start);
@@ -199,6 +205,16 @@ CycleResult CycleWork::Run() const {
         anew = plan_anew(num_states);
       }
       if (anew && IsAllThatWasAsked(anew->status)) show(*std::move(anew), t_effect_);
+    }
+    if (is_calm && goes_on && !task_.budget.IsSpent(spent)) {
+      const int at_pace = StatesAtPace();
+      if (EndOf(present) >= EndOfNew(at_pace) + HorizonOffset(kWorthCatchingUp_s)) {
+        std::optional<PlanResult> sooner = plan_anew(at_pace);
+        if (sooner && IsAllThatWasAsked(sooner->status) &&
+            sooner->clearance.least_m > clearance.least_m - kNotMuchNearer_m) {
+          show(*std::move(sooner), t_effect_);
+        }
+      }
     }
     const bool has_to_flee =
         clearance.first_contact &&
@@ -333,6 +349,24 @@ int CycleWork::StatesSlowedDown(const PlanRequest& request, double limit_share) 
 
 int CycleWork::Slower(int num_states) const {
   return std::min(num_states_, static_cast<int>(std::ceil(kSlower * num_states)));
+}
+
+int CycleWork::StatesAtPace() const {
+  if (options_.q_start.size() == 0) return num_states_;
+  const double whole_s = planner_.DirectTime_s(options_.q_start, options_.q_goal);
+  if (whole_s <= 0) return num_states_;  // no limit, no pace
+  double stop_s = 0;
+  for (int j = 0; j < planner_.robot().num_joints(); ++j) {
+    const double a_max = planner_.robot().limits()[static_cast<std::size_t>(j)].a_max;
+    stop_s = std::max(stop_s, std::abs(expected_.v(j)) / a_max);
+  }
+  const double left_s = planner_.DirectTime_s(expected_.q, options_.q_goal) + stop_s;
+  const double num_steps = std::ceil(left_s / whole_s * (num_states_ - 1));
+  return static_cast<int>(std::clamp<double>(num_steps, kMinFreeStates, num_states_ - 1)) + 1;
+}
+
+EpisodeTime CycleWork::EndOfNew(int num_states) const {
+  return t_effect_ + HorizonOffset((num_states - 1) * options_.step_s);
 }
 
 TimedPlan CycleWork::Brake() const {

@@ -24,6 +24,9 @@ struct ReplannerOptions {
   /// ahead than this [s], > 0. What is predicted for later is often wrong, and who flees from it
   /// begins again and again: for robots that are stopped anyway before they touch anything.
   double flees_within_s = std::numeric_limits<double>::infinity();
+  /// From where horizon_s is meant: an arm that has lost time catches up where it can, as far as
+  /// what is left of the way asks for less time than the way from here. None: never.
+  Eigen::VectorXd q_start = {};
 
   int num_states() const;  ///< of a whole horizon
 };
@@ -88,6 +91,11 @@ struct CycleResult {
 /// time and begins with another guess; and to brake (see braking.h) and wait. Then the safest is
 /// taken (see clearance.h), and none if going on with what runs is as safe. A robot that brakes or
 /// waits looks for new horizons alone.
+///
+/// An arm that has lost time catches up: where the plan that runs is free and keeps its limits, but
+/// ends at least 0.5 s later than a motion at the pace of the task would, one that ends by then is
+/// tried, and taken if it does as well and comes no more than 1 cm nearer to what is there. That
+/// pace is the horizon's for the direct motion from options.q_start, within limits.
 ///
 /// All searches share the budget. Whether the robot may stay at its goal is not worth more than
 /// half of it; nor, where the cycle before came to a new horizon too late, is going on from what

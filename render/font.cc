@@ -30,14 +30,15 @@ Font::Font(const GlContext&) {
   std::vector<unsigned char> rgb(3 * kBufferWidth * kBufferHeight);
   for (char letter = kFirst; letter <= kLast; ++letter) {
     Glyph& glyph = glyphs_[static_cast<std::size_t>(letter - kFirst)];
-    glyph.width = context.charWidthBig[static_cast<int>(letter)];
+    glyph.width = context.charWidthBig[static_cast<unsigned char>(letter)];
     mjr_rectangle(buffer, 0, 0, 0, 1);
     const char text[] = {letter, '\0'};
     mjr_text(mjFONT_BIG, text, &context, 0, 0, 1, 1, 1);
     mjr_readPixels(rgb.data(), nullptr, buffer, &context);
     for (int y = cell_height_ - 1; y >= 0; --y) {  // OpenGL's rows begin at the bottom.
       for (int x = 0; x < glyph.width; ++x) {
-        glyph.coverage.push_back(rgb[static_cast<std::size_t>(3 * (y * kBufferWidth + x))] > 127);
+        const int red = 3 * (y * kBufferWidth + x);
+        glyph.coverage.push_back(rgb[static_cast<std::size_t>(red)] > 127);
       }
     }
   }
@@ -81,7 +82,8 @@ double Font::Draw(Image& image, double x, double y, double line_height, Color co
         int covered = 0;
         for (int v = top; v < bottom; ++v) {
           for (int u = left; u < right; ++u) {
-            covered += glyph.coverage[static_cast<std::size_t>(v * glyph.width + u)];
+            const int pixel = v * glyph.width + u;
+            covered += glyph.coverage[static_cast<std::size_t>(pixel)];
           }
         }
         if (covered > 0) image.Blend(px, py, color, std::min(1.0, covered * scale * scale));

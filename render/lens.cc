@@ -64,8 +64,8 @@ void Lens::Blur(std::vector<float>* picture) const {
   std::vector<float> row(w + 2 * static_cast<std::size_t>(reach));
   for (int y = 0; y < height_; ++y) {
     float* const out = picture->data() + static_cast<std::size_t>(y) * w;
-    for (int x = -reach; x < width_ + reach; ++x) {
-      row[static_cast<std::size_t>(x + reach)] = out[std::clamp(x, 0, width_ - 1)];
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      row[i] = out[std::clamp(static_cast<int>(i) - reach, 0, width_ - 1)];
     }
     const float* const in = row.data() + reach;
     for (int x = 0; x < width_; ++x) out[x] = kernel_[0] * in[x];

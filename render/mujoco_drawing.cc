@@ -22,7 +22,7 @@ void DrawingContext::Render(mjvScene& scene) const {
 
 Image DrawingContext::Read() const {
   const mjrRect buffer = viewport();
-  const auto row_bytes = static_cast<std::size_t>(3 * buffer.width);
+  const auto row_bytes = 3 * static_cast<std::size_t>(buffer.width);
   std::vector<std::uint8_t> rgb(row_bytes * static_cast<std::size_t>(buffer.height));
   mjr_readPixels(rgb.data(), nullptr, buffer, &context_);
   Image image(buffer.width, buffer.height);

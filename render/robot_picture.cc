@@ -105,9 +105,8 @@ Image DrawRobotAndSpheres(const GlContext&, const robot::RobotModel& robot, cons
     mjv_updateScene(copy.get(), data.get(), &option, nullptr, &camera, mjCAT_ALL, &scene.get());
     AddWall(&scene.get(), view, reach_m);
     for (Eigen::Index s = 0; s < centers.cols(); ++s) {
-      const auto link =
-          static_cast<std::size_t>(robot.spheres()[static_cast<std::size_t>(s)].link + 1);
-      const std::array<float, 3>& color = kColors[link % kColors.size()];
+      const int place = robot.spheres()[static_cast<std::size_t>(s)].link + 1;  // the base's is 0
+      const std::array<float, 3>& color = kColors[static_cast<std::size_t>(place) % kColors.size()];
       Add(&scene.get(), mjGEOM_SPHERE, Eigen::Vector3d::Constant(robot.sphere_radii_m()[s]),
           centers.col(s), Eigen::Matrix3d::Identity(), {color[0], color[1], color[2], kGlass}, 0);
     }

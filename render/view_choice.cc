@@ -59,12 +59,18 @@ struct Interval {
   bool Contains(EpisodeTime t) const { return begin <= t && t <= end; }
 };
 
+std::vector<double> TimesUntil(double end_s, double step_s) {
+  std::vector<double> times;
+  for (int i = 0; i * step_s <= end_s; ++i) times.push_back(i * step_s);
+  return times;
+}
+
 // When each obstacle passes the robot: around the moment when it is nearest to it.
 std::vector<Interval> TimesOfPassing(const TraceModel& trace, const Eigen::Vector3d& p_WRobot) {
   std::vector<Interval> passing(trace.recording().obstacles.size());
   std::vector<double> nearest_m(passing.size(), std::numeric_limits<double>::infinity());
   const double end_s = std::min(kWatched_s, record::EndOf(trace.recording()).seconds());
-  for (double t_s = 0; t_s <= end_s; t_s += kStep_s / 5) {
+  for (const double t_s : TimesUntil(end_s, kStep_s / 5)) {
     const std::vector<Pose> poses = ObstaclesAt(trace.recording(), EpisodeTime(t_s));
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const double distance_m = (poses[i].translation() - p_WRobot).norm();
@@ -86,7 +92,7 @@ std::vector<Moment> Moments(const std::vector<TraceModel*>& traces) {
   std::vector<Moment> moments;
   for (TraceModel* const trace : traces) {
     const double end_s = std::min(kWatched_s, record::EndOf(trace->recording()).seconds());
-    for (double t_s = 0; t_s <= end_s; t_s += kStep_s) {
+    for (const double t_s : TimesUntil(end_s, kStep_s)) {
       moments.push_back({trace, EpisodeTime(t_s)});
     }
   }

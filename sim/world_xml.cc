@@ -299,7 +299,8 @@ void AddTag(const scenarios::Tag& tag, const Eigen::Vector3d& box_size_m, XMLEle
   for (int y = 0; y < n; ++y) {
     for (int x = 0; x < n; ++x) {  // runs of black
       const auto is_black = [&](int at) {
-        return at < n && black[static_cast<std::size_t>(n * y + at)];
+        const int module = n * y + at;
+        return at < n && black[static_cast<std::size_t>(module)];
       };
       int end = x;
       while (is_black(end)) ++end;

@@ -345,6 +345,73 @@ TEST(Replanner, SlowsDownByAboutAsMuchAsALimitAsksFor) {
   }
 }
 
+// The second cycle of a robot that rests at `q` when the first one begins.
+CycleResult SecondCycle(Replanner& replanner, MovingBallWorld& world, const Eigen::Vector2d& q) {
+  const CycleResult first =
+      RunAndAccept(replanner, world, {EpisodeTime(0), q, Eigen::Vector2d::Zero()}, 0.1);
+  EXPECT_EQ(first.record.plan.num_states(), 31);
+  if (!first.plan) {
+    ADD_FAILURE() << first.record.status;
+    return first;
+  }
+  const TrajectoryPoint there = Sample(first.plan->trajectory, HorizonOffset(0.1));
+  return RunAndAccept(replanner, world, {EpisodeTime(0.1), there.q, there.v}, 0.1);
+}
+
+TEST(Replanner, CatchesUpAsFarAsWhatIsLeftOfTheWayAsksForLessTime) {
+  const auto planner = MakePlanner("gpmp", MakePlanarArm(), Loop::Settings());
+  const Eigen::Vector2d q = kGoal - 0.2 * (kGoal - kStart);
+  const double left_s = 3 * planner->DirectTime_s(q, kGoal) / planner->DirectTime_s(kStart, kGoal);
+  ASSERT_LT(left_s, 2);
+  for (const bool knows_start : {false, true}) {
+    MovingBallWorld world = NothingThere();
+    ReplannerOptions options = {.horizon_s = 3, .step_s = 0.1, .q_goal = kGoal};
+    if (knows_start) options.q_start = kStart;
+    Replanner replanner(*planner, options);
+    const CycleRecord record = SecondCycle(replanner, world, q).record;
+    EXPECT_EQ(record.status, "solved");
+    EXPECT_EQ(record.plan_start, EpisodeTime(knows_start ? 0.2 : 0));
+    const double took_s = record.plan.t_s(record.plan.num_states() - 1);
+    EXPECT_NEAR(took_s, knows_start ? left_s : 3, 0.2);
+    EXPECT_TRUE(record.plan.q.rightCols(1).isApprox(kGoal, 1e-3));
+  }
+}
+
+// Goes on as it does, and straight to the goal in the whole time of a new horizon.
+class UnhurriedPlanner final : public Planner {
+ public:
+  UnhurriedPlanner() : Planner(MakePlanarArm(), Loop::Settings()) {}
+
+ private:
+  PlanAnswer DoPlan(const PlanRequest& request, PlanJudge&) const override {
+    return {.trajectory = request.initial
+                              ? *request.initial
+                              : MakeDirectMotion(request, sidestep::planner::Timing::kWholeTime),
+            .converged = true};
+  }
+};
+
+TEST(Replanner, IsNotInAHurryWhereSomethingPasses) {
+  const UnhurriedPlanner planner;
+  Trajectory sooner;
+  for (const bool passes : {false, true}) {
+    // From above through the arm's plane, where the arm would be in a hurry.
+    MovingBallWorld world = {{0.9, 0, passes ? 4.0 : 40.0}, {0, 0, -4}, 0.1};
+    ReplannerOptions options = {.horizon_s = 3, .step_s = 0.1, .q_goal = kGoal};
+    options.q_start = kStart - 0.7 * (kGoal - kStart);  // so there is much time
+    Replanner replanner(planner, options);
+    const CycleRecord record = SecondCycle(replanner, world, kStart).record;
+    EXPECT_EQ(record.status, "solved");
+    EXPECT_EQ(record.plan_start, EpisodeTime(passes ? 0 : 0.2));
+    if (!passes) sooner = record.plan;
+    const auto field = world.MakeField();
+    const auto would_touch = MeasureClearance(planner.robot(), *field, sooner, EpisodeTime(0.2),
+                                              EpisodeTime(0.2), EpisodeTime(3))
+                                 .first_contact;
+    EXPECT_EQ(would_touch.has_value(), passes);
+  }
+}
+
 TEST(Replanner, BrakesBeforeWhatComesIfThePlannerFindsNone) {
   MovingBallWorld world = NothingThere();
   auto mine = std::make_unique<PlannerThatMayFail>();
