@@ -32,11 +32,15 @@ struct GridSpec {
   Eigen::Vector3d Center(int i, int j, int k) const {
     return first_center_m + cell_m * Eigen::Vector3d(i, j, k);
   }
-  /// The same by the cell's Index.
-  Eigen::Vector3d CenterOf(std::size_t cell) const {
+  /// Which cell has this Index.
+  std::array<int, 3> CellAt(std::size_t index) const {
     const auto nx = static_cast<std::size_t>(size[0]), ny = static_cast<std::size_t>(size[1]);
-    return Center(static_cast<int>(cell % nx), static_cast<int>(cell / nx % ny),
-                  static_cast<int>(cell / nx / ny));
+    return {static_cast<int>(index % nx), static_cast<int>(index / nx % ny),
+            static_cast<int>(index / nx / ny)};
+  }
+  Eigen::Vector3d CenterOf(std::size_t index) const {
+    const auto [i, j, k] = CellAt(index);
+    return Center(i, j, k);
   }
   /// The cell that holds a point; it may lie outside the grid. Cells are half-open: a point on the
   /// face between two cells belongs to the upper one.

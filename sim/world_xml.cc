@@ -147,7 +147,7 @@ void MergeRobot(const scenarios::Scenario& scenario, const std::string& path, XM
 void AddSettings(const scenarios::Scenario& scenario, XMLElement* world) {
   Append(world, "option", {{"timestep", "0.001"}, {"integrator", "Euler"}});
   // Room for a robot that lies deep in an obstacle; a simulation makes more where it needs it.
-  Append(world, "size", {{"nconmax", "200"}, {"njmax", "800"}});
+  Append(world, "size", {{"nconmax", "50"}, {"njmax", "250"}});
   Append(world, "statistic", {{"center", ToText(scenario.X_WB.translation())}, {"extent", "3"}});
   XMLElement* visual = Append(world, "visual");
   Append(visual, "global", {{"offwidth", "1920"}, {"offheight", "1080"}});

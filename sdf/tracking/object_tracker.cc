@@ -250,7 +250,7 @@ std::vector<ObjectTracker::View> ObjectTracker::Look(std::vector<Component> comp
     // Of the cells that lie outermost on each side, how many have an unseen one beyond.
     std::array<std::array<int, 2>, 3> outermost = {}, open = {};
     for (const std::size_t index : view.cells.cells) {
-      const std::array<int, 3> cell = CellAt(grid_, index);
+      const std::array<int, 3> cell = grid_.CellAt(index);
       for (std::size_t a = 0; a < 3; ++a) {
         for (const std::size_t side : {0u, 1u}) {
           if (cell[a] != (side == 0 ? view.cells.first : view.cells.last)[a]) continue;
@@ -637,7 +637,7 @@ void ObjectTracker::TakeShape(Track& track, const Component& component) const {
                    component.centroid_m;
   track.shape_cells.clear();
   for (const std::size_t index : component.cells) {
-    const std::array<int, 3> cell = CellAt(grid_, index);
+    const std::array<int, 3> cell = grid_.CellAt(index);
     track.shape_cells.push_back(
         {cell[0] - component.first[0], cell[1] - component.first[1], cell[2] - component.first[2]});
   }

@@ -14,6 +14,8 @@ struct Run {
   std::size_t parent;  // a run of the same component, never a later one
 };
 
+constexpr std::size_t kFew = 16;
+
 bool AllFree(const std::uint8_t* filled, const std::uint8_t* left_out, std::size_t count) {
   std::uint8_t any = 0;
   for (std::size_t n = 0; n < count; ++n) {
@@ -36,16 +38,20 @@ std::vector<Run> FindRuns(const OccupancyGrid& occupancy, std::span<const std::u
       blocks->Clear(block);
       continue;
     }
-    for (std::size_t cell = begin; cell < end; ++cell) {
-      if (filled[cell] == 0 || left_out[cell] != 0) continue;
-      if (cell == next && cell != 0) {
-        ++runs.back().last;
-      } else {
-        const int i = static_cast<int>(cell % nx);
-        runs.push_back({i, i, cell / nx, runs.size()});
+    for (std::size_t few = begin; few < end; few += kFew) {  // most of a block holds nothing
+      const std::size_t few_end = std::min(few + kFew, end);
+      if (AllFree(&filled[few], &left_out[few], few_end - few)) continue;
+      for (std::size_t cell = few; cell < few_end; ++cell) {
+        if (filled[cell] == 0 || left_out[cell] != 0) continue;
+        if (cell == next && cell != 0) {
+          ++runs.back().last;
+        } else {
+          const int i = static_cast<int>(cell % nx);
+          runs.push_back({i, i, cell / nx, runs.size()});
+        }
+        const bool ends_row = runs.back().last + 1 == occupancy.spec.size[0];
+        next = ends_row ? 0 : cell + 1;
       }
-      const bool ends_row = runs.back().last + 1 == occupancy.spec.size[0];
-      next = ends_row ? 0 : cell + 1;
     }
   }
   return runs;
@@ -118,12 +124,12 @@ struct Growing {
     }
     c.first = {std::min(c.first[0], run.first), std::min(c.first[1], j), std::min(c.first[2], k)};
     c.last = {std::max(c.last[0], run.last), std::max(c.last[1], j), std::max(c.last[2], k)};
-    for (int i = run.first; i <= run.last; ++i) {
-      c.cells.push_back(spec.Index(i, j, k));
-      sum[0] += i;
-    }
-    sum[1] += std::int64_t{j} * (run.last - run.first + 1);
-    sum[2] += std::int64_t{k} * (run.last - run.first + 1);
+    const std::size_t first_cell = spec.Index(run.first, j, k);
+    const int count = run.last - run.first + 1;
+    for (int n = 0; n < count; ++n) c.cells.push_back(first_cell + static_cast<std::size_t>(n));
+    sum[0] += std::int64_t{count} * (run.first + run.last) / 2;
+    sum[1] += std::int64_t{j} * count;
+    sum[2] += std::int64_t{k} * count;
   }
 
   Component Finish(const GridSpec& spec) && {
@@ -155,18 +161,22 @@ std::vector<Component> FindComponents(const OccupancyGrid& occupancy,
   }
   std::vector<Run> runs = FindRuns(occupancy, left_out, blocks);
   JoinNeighbours(occupancy.spec, runs);
-  std::vector<Growing> growing;
   std::vector<std::size_t> number(runs.size());  // of each run's component
+  std::vector<std::size_t> num_cells;            // of each component
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const std::size_t root = FindRoot(runs, r);
     if (root == r) {  // The first run of a component is its root.
-      number[r] = growing.size();
-      growing.emplace_back();
+      number[r] = num_cells.size();
+      num_cells.push_back(0);
     }
     number[r] = number[root];
-    growing[number[r]].Add(runs[r], occupancy.spec);
+    num_cells[number[r]] += static_cast<std::size_t>(runs[r].last - runs[r].first + 1);
   }
+  std::vector<Growing> growing(num_cells.size());
+  for (std::size_t n = 0; n < growing.size(); ++n) growing[n].component.cells.reserve(num_cells[n]);
+  for (std::size_t r = 0; r < runs.size(); ++r) growing[number[r]].Add(runs[r], occupancy.spec);
   std::vector<Component> components;
+  components.reserve(growing.size());
   for (Growing& component : growing) {
     components.push_back(std::move(component).Finish(occupancy.spec));
   }
@@ -177,19 +187,12 @@ std::vector<Component> FindComponents(const OccupancyGrid& occupancy) {
   return FindComponents(occupancy, std::vector<std::uint8_t>(occupancy.cells.size(), 0));
 }
 
-std::array<int, 3> CellAt(const GridSpec& spec, std::size_t index) {
-  const std::size_t nx = static_cast<std::size_t>(spec.size[0]);
-  const std::size_t ny = static_cast<std::size_t>(spec.size[1]);
-  return {static_cast<int>(index % nx), static_cast<int>(index / nx % ny),
-          static_cast<int>(index / (nx * ny))};
-}
-
 Component MakeComponent(std::vector<std::size_t> cells, const GridSpec& grid) {
   Component component;
-  component.first = component.last = CellAt(grid, cells.front());
+  component.first = component.last = grid.CellAt(cells.front());
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // of the cells' indices
   for (const std::size_t index : cells) {
-    const std::array<int, 3> cell = CellAt(grid, index);
+    const std::array<int, 3> cell = grid.CellAt(index);
     for (std::size_t a = 0; a < 3; ++a) {
       component.first[a] = std::min(component.first[a], cell[a]);
       component.last[a] = std::max(component.last[a], cell[a]);
@@ -208,7 +211,7 @@ OccupancyGrid CutOut(const Component& component, const GridSpec& grid) {
   for (std::size_t a = 0; a < 3; ++a) spec.size[a] = component.last[a] - component.first[a] + 1;
   OccupancyGrid shape(spec);
   for (const std::size_t index : component.cells) {
-    const auto [i, j, k] = CellAt(grid, index);
+    const auto [i, j, k] = grid.CellAt(index);
     shape
         .cells[spec.Index(i - component.first[0], j - component.first[1], k - component.first[2])] =
         1;

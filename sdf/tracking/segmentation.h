@@ -58,9 +58,6 @@ std::vector<Component> FindComponents(const OccupancyGrid& occupancy);
 /// @param cells ascending, not empty.
 Component MakeComponent(std::vector<std::size_t> cells, const GridSpec& grid);
 
-/// The cell (i, j, k) of an index.
-std::array<int, 3> CellAt(const GridSpec& grid, std::size_t index);
-
 /// The component alone, in a grid that fits its box, in W.
 OccupancyGrid CutOut(const Component& component, const GridSpec& grid);
 
