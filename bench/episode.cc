@@ -108,7 +108,7 @@ class Loop {
             scenario, scenario.epsilon_m + robot.largest_sphere_radius_m(), world))),
         horizon_s_(HorizonOf(scenario, *planner_)),
         replanner_(*planner_, {horizon_s_, scenario.step_s, scenario.q_goal, FleesWithin(scenario),
-                               scenario.q_start}),
+                               planner_->DirectTime_s(scenario.q_start, scenario.q_goal)}),
         goal_(scenario.q_goal, scenario.dwell_s, robot::ToleranceScale(planner_->robot())),
         latency_(scenario),
         clock_(options.clock == EpisodeClock::kWall ? MakeWallClock() : MakeVirtualClock()),

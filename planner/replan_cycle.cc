@@ -15,11 +15,11 @@ namespace sidestep::planner {
 namespace {
 
 constexpr const char* kBraked = "braked";
-constexpr int kMinFreeStates = 3;     // fewer leave nothing to choose
-constexpr double kOffPlan_rad = 0.1;  // a robot this far from its plan does not follow it
-constexpr double kSlower = 1.5;       // from a horizon that is too short to the next one
-constexpr double kWorthCatchingUp_s = 0.5;
-constexpr double kNotMuchNearer_m = 0.01;  // to what is there, for arriving sooner
+constexpr int kMinFreeStates = 3;           // fewer leave nothing to choose
+constexpr double kOffPlan_rad = 0.1;        // a robot this far from its plan does not follow it
+constexpr double kSlower = 1.5;             // from a horizon that is too short to the next one
+constexpr double kWorthCatchingUp_s = 0.5;  // who would not arrive sooner by this much goes on
+constexpr double kNotMuchNearer_m = 0.01;   // to what is there, for arriving sooner
 constexpr double kStill_rad_s = 0.01;    // what is measured of a robot at rest is noise below this
 constexpr double kArrivesLate_s = 0.5;   // an arm lags its plan by less, or does not arrive by it
 constexpr double kRecordStep_s = 0.1;    // between the recorded positions of a predicted object
@@ -105,9 +105,9 @@ class CycleWork {
   // A whole horizon from `start`.
   PlanRequest NewHorizon(EpisodeTime start, const Eigen::VectorXd& q,
                          const Eigen::VectorXd& v) const;
-  // Of a horizon from t_effect in which the rest of a plan that answers `request` keeps limits of
-  // which it takes `limit_share`, if it is gone the same way; and of the next one to try, if not.
-  int StatesSlowedDown(const PlanRequest& request, double limit_share) const;
+  // Of a horizon from t_effect in which the rest of the running plan's time, taken `slower` times
+  // as slowly, is enough; and of the next one to try, if it is not.
+  int StatesSlowedDown(double slower) const;
   int Slower(int num_states) const;
   // Of a horizon from t_effect that is to what is left of the way, as the whole horizon is to all.
   int StatesAtPace() const;
@@ -197,7 +197,7 @@ CycleResult CycleWork::Run() const {
     show(std::move(result), request->start);
     if (wants_time && running_ && request->start < t_effect_) {
       // Not all at once: with much time for what is left of a motion, an arm swings past the goal.
-      int num_states = is_too_fast ? StatesSlowedDown(*request, limit_share) : num_states_;
+      int num_states = is_too_fast ? StatesSlowedDown(limit_share) : num_states_;
       std::optional<PlanResult> anew = plan_anew(num_states);
       while (anew && !IsAllThatWasAsked(anew->status) && num_states < num_states_) {
         const bool is_still_too_fast = anew->status == PlanStatus::kOverLimits;
@@ -340,10 +340,9 @@ PlanRequest CycleWork::NewHorizon(EpisodeTime start, const Eigen::VectorXd& q,
   return request;
 }
 
-int CycleWork::StatesSlowedDown(const PlanRequest& request, double limit_share) const {
-  const EpisodeTime end = request.start + HorizonOffset((request.num_states - 1) * request.step_s);
-  const double left_s = std::max(0.0, (end - t_effect_).seconds());
-  const auto num_steps = static_cast<int>(std::ceil(left_s * limit_share / request.step_s));
+int CycleWork::StatesSlowedDown(double slower) const {
+  const double left_s = std::max(0.0, (EndOf(*running_) - t_effect_).seconds());
+  const auto num_steps = static_cast<int>(std::ceil(left_s * slower / options_.step_s));
   return std::clamp(num_steps + 1, std::min(kMinFreeStates + 1, num_states_), num_states_);
 }
 
@@ -352,16 +351,14 @@ int CycleWork::Slower(int num_states) const {
 }
 
 int CycleWork::StatesAtPace() const {
-  if (options_.q_start.size() == 0) return num_states_;
-  const double whole_s = planner_.DirectTime_s(options_.q_start, options_.q_goal);
-  if (whole_s <= 0) return num_states_;  // no limit, no pace
+  if (options_.direct_s <= 0) return num_states_;  // no limit, no pace
   double stop_s = 0;
   for (int j = 0; j < planner_.robot().num_joints(); ++j) {
     const double a_max = planner_.robot().limits()[static_cast<std::size_t>(j)].a_max;
     stop_s = std::max(stop_s, std::abs(expected_.v(j)) / a_max);
   }
   const double left_s = planner_.DirectTime_s(expected_.q, options_.q_goal) + stop_s;
-  const double num_steps = std::ceil(left_s / whole_s * (num_states_ - 1));
+  const double num_steps = std::ceil(left_s / options_.direct_s * (num_states_ - 1));
   return static_cast<int>(std::clamp<double>(num_steps, kMinFreeStates, num_states_ - 1)) + 1;
 }
 

@@ -24,9 +24,10 @@ struct ReplannerOptions {
   /// ahead than this [s], > 0. What is predicted for later is often wrong, and who flees from it
   /// begins again and again: for robots that are stopped anyway before they touch anything.
   double flees_within_s = std::numeric_limits<double>::infinity();
-  /// From where horizon_s is meant: an arm that has lost time catches up where it can, as far as
-  /// what is left of the way asks for less time than the way from here. None: never.
-  Eigen::VectorXd q_start = {};
+  /// How long the direct motion of the whole way takes [s], for which horizon_s is meant
+  /// (Planner::DirectTime_s): an arm that has lost time catches up where it can, as far as what is
+  /// left of the way takes less. 0: never.
+  double direct_s = 0;
 
   int num_states() const;  ///< of a whole horizon
 };
@@ -95,7 +96,7 @@ struct CycleResult {
 /// An arm that has lost time catches up: where the plan that runs is free and keeps its limits, but
 /// ends at least 0.5 s later than a motion at the pace of the task would, one that ends by then is
 /// tried, and taken if it does as well and comes no more than 1 cm nearer to what is there. That
-/// pace is the horizon's for the direct motion from options.q_start, within limits.
+/// pace is the horizon's for a direct motion of options.direct_s.
 ///
 /// All searches share the budget. Whether the robot may stay at its goal is not worth more than
 /// half of it; nor, where the cycle before came to a new horizon too late, is going on from what

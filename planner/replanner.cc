@@ -20,6 +20,7 @@ Replanner::Replanner(const Planner& planner, const ReplannerOptions& options)
   require(std::abs(steps - std::round(steps)) < 1e-6, "horizon_s must be a multiple of step_s");
   require(options.num_states() > 3, "horizon_s must be at least 3 steps");
   require(options.flees_within_s > 0, "flees_within_s must be > 0");
+  require(std::isfinite(options.direct_s) && options.direct_s >= 0, "direct_s must be >= 0");
   require(options.q_goal.size() == planner.robot().num_joints() && options.q_goal.allFinite(),
           "q_goal must be finite and as long as the robot has joints");
 }

@@ -30,6 +30,16 @@ std::vector<Run> FindRuns(const OccupancyGrid& occupancy, std::span<const std::u
   const std::size_t nx = static_cast<std::size_t>(occupancy.spec.size[0]);
   std::vector<Run> runs;
   std::size_t next = 0;  // the cell that would continue the last run, 0 if there is none
+  const auto add = [&](std::size_t cell) {
+    if (cell == next && cell != 0) {
+      ++runs.back().last;
+    } else {
+      const int i = static_cast<int>(cell % nx);
+      runs.push_back({i, i, cell / nx, runs.size()});
+    }
+    const bool ends_row = runs.back().last + 1 == occupancy.spec.size[0];
+    next = ends_row ? 0 : cell + 1;
+  };
   for (std::size_t block = 0; block < blocks->num_blocks(); ++block) {
     if (!blocks->may_hold(block)) continue;
     const std::size_t begin = block * SearchBlocks::kCells;
@@ -42,15 +52,7 @@ std::vector<Run> FindRuns(const OccupancyGrid& occupancy, std::span<const std::u
       const std::size_t few_end = std::min(few + kFew, end);
       if (AllFree(&filled[few], &left_out[few], few_end - few)) continue;
       for (std::size_t cell = few; cell < few_end; ++cell) {
-        if (filled[cell] == 0 || left_out[cell] != 0) continue;
-        if (cell == next && cell != 0) {
-          ++runs.back().last;
-        } else {
-          const int i = static_cast<int>(cell % nx);
-          runs.push_back({i, i, cell / nx, runs.size()});
-        }
-        const bool ends_row = runs.back().last + 1 == occupancy.spec.size[0];
-        next = ends_row ? 0 : cell + 1;
+        if (filled[cell] != 0 && left_out[cell] == 0) add(cell);
       }
     }
   }

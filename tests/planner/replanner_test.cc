@@ -363,16 +363,16 @@ TEST(Replanner, CatchesUpAsFarAsWhatIsLeftOfTheWayAsksForLessTime) {
   const Eigen::Vector2d q = kGoal - 0.2 * (kGoal - kStart);
   const double left_s = 3 * planner->DirectTime_s(q, kGoal) / planner->DirectTime_s(kStart, kGoal);
   ASSERT_LT(left_s, 2);
-  for (const bool knows_start : {false, true}) {
+  for (const bool knows_way : {false, true}) {
     MovingBallWorld world = NothingThere();
     ReplannerOptions options = {.horizon_s = 3, .step_s = 0.1, .q_goal = kGoal};
-    if (knows_start) options.q_start = kStart;
+    if (knows_way) options.direct_s = planner->DirectTime_s(kStart, kGoal);
     Replanner replanner(*planner, options);
     const CycleRecord record = SecondCycle(replanner, world, q).record;
     EXPECT_EQ(record.status, "solved");
-    EXPECT_EQ(record.plan_start, EpisodeTime(knows_start ? 0.2 : 0));
+    EXPECT_EQ(record.plan_start, EpisodeTime(knows_way ? 0.2 : 0));
     const double took_s = record.plan.t_s(record.plan.num_states() - 1);
-    EXPECT_NEAR(took_s, knows_start ? left_s : 3, 0.2);
+    EXPECT_NEAR(took_s, knows_way ? left_s : 3, 0.2);
     EXPECT_TRUE(record.plan.q.rightCols(1).isApprox(kGoal, 1e-3));
   }
 }
@@ -398,7 +398,7 @@ TEST(Replanner, IsNotInAHurryWhereSomethingPasses) {
     // From above through the arm's plane, where the arm would be in a hurry.
     MovingBallWorld world = {{0.9, 0, passes ? 4.0 : 40.0}, {0, 0, -4}, 0.1};
     ReplannerOptions options = {.horizon_s = 3, .step_s = 0.1, .q_goal = kGoal};
-    options.q_start = kStart - 0.7 * (kGoal - kStart);  // so there is much time
+    options.direct_s = 1.7 * planner.DirectTime_s(kStart, kGoal);  // so there is much time
     Replanner replanner(planner, options);
     const CycleRecord record = SecondCycle(replanner, world, kStart).record;
     EXPECT_EQ(record.status, "solved");
@@ -714,7 +714,9 @@ TEST(Replanner, RefusesOptionsOutOfRange) {
                                    {-3, 0.1, kGoal},
                                    {3, 0.1, Eigen::VectorXd::Zero(3)},
                                    {3e-200, 1e-200, kGoal},
-                                   {3, 0.1, kGoal, 0}};
+                                   {3, 0.1, kGoal, 0},
+                                   {3, 0.1, kGoal, 1, -1},
+                                   {3, 0.1, kGoal, 1, std::nan("")}};
   for (const ReplannerOptions& options : kBad) {
     EXPECT_THROW(Replanner(*planner, options), std::invalid_argument);
   }
