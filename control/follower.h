@@ -30,15 +30,17 @@ TrackerLimits LabLimits(const robot::RobotModel& robot, const SafetySettings& sa
 /// lock, allocates nothing, and never waits.
 class Follower {
  public:
+  static constexpr std::size_t kLogLength = 4096;  ///< 4 s
+
   /// @param log_length of ticks, kept between two calls of DrainLog.
   /// @throws std::invalid_argument as JerkLimitedTracker.
-  explicit Follower(const TrackerLimits& limits, std::size_t log_length = 4096);
+  explicit Follower(const TrackerLimits& limits, std::size_t log_length = kLogLength);
 
   /// Of a robot, under a supervisor if the profile is not off. Under kLab, commands keep to the
   /// settings' shares of the robot's limits, else to `limits`.
   /// @throws std::invalid_argument for a robot without capsules that is to be supervised.
   Follower(const robot::RobotModel& robot, const TrackerLimits& limits,
-           const SafetySettings& safety);
+           const SafetySettings& safety, std::size_t log_length = kLogLength);
 
   int num_joints() const { return tracker_.num_joints(); }
 

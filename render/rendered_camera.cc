@@ -28,13 +28,13 @@ Lens LensOf(const scenarios::Scenario& scenario) {
 }
 
 // The model for drawing alone, its picture as large as the lens wants it.
-sim::MujocoModelPtr ModelFor(const mjModel& model, const Lens& lens) {
-  sim::MujocoModelPtr copy(mj_copyModel(nullptr, &model));
-  copy->vis.global.offwidth = lens.ideal_width();
-  copy->vis.global.offheight = lens.ideal_height();
-  copy->vis.quality.offsamples = 0;  // the lens samples finely itself
-  copy->vis.quality.numquads = 1;
-  return copy;
+sim::MujocoModelPtr ModelFor(const std::string& world_xml, const Lens& lens) {
+  sim::MujocoModelPtr model = sim::LoadMujocoModel(world_xml, "a camera's world");
+  model->vis.global.offwidth = lens.ideal_width();
+  model->vis.global.offheight = lens.ideal_height();
+  model->vis.quality.offsamples = 0;  // the lens samples finely itself
+  model->vis.quality.numquads = 1;
+  return model;
 }
 
 void Copy(const Eigen::Vector3d& from, float* to) {
@@ -60,7 +60,7 @@ class RenderedCamera::Studio {
                                       scenario.sensor.tag_images->look_at_m)),
         exposure_s_(scenario.sensor.tag_images->exposure_s),
         lens_(LensOf(scenario)),
-        model_(ModelFor(world.model(), lens_)),
+        model_(ModelFor(world.xml(), lens_)),
         data_(sim::MakeMujocoData(*model_)),
         scene_(*model_, kMaxGeoms),
         drawing_(*model_) {

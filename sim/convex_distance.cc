@@ -1,6 +1,8 @@
 #include "sidestep/sim/convex_distance.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <limits>
 
 namespace sidestep::sim {
@@ -17,25 +19,42 @@ Vector3d AnyPoint(const ConvexSolid& solid) {
 }
 
 struct Simplex {
-  Eigen::Matrix<double, 3, 4> points = Eigen::Matrix<double, 3, 4>::Zero();
+  std::array<Vector3d, 4> points;
   int size = 0;
 };
 
-// The point nearest to the origin of the plane (line, point) through a simplex, if it is inside the
-// simplex.
-bool ProjectOrigin(const Simplex& s, Vector3d* nearest) {
-  const Vector3d p = s.points.col(0);
-  const Vector3d e1 = s.points.col(1) - p, e2 = s.points.col(2) - p, e3 = s.points.col(3) - p;
-  if (s.size == 1) {
+// Some corners of a simplex.
+struct Face {
+  std::array<const Vector3d*, 4> corners;
+  int size = 0;
+};
+
+Face FaceOf(const Simplex& simplex, unsigned corners) {
+  Face face;
+  for (int i = 0; i < simplex.size; ++i) {
+    if ((corners >> i & 1u) == 0) continue;
+    face.corners[static_cast<std::size_t>(face.size++)] =
+        &simplex.points[static_cast<std::size_t>(i)];
+  }
+  return face;
+}
+
+// The point nearest to the origin of the plane (line, point) through a face, if it is inside the
+// face.
+bool ProjectOrigin(const Face& face, Vector3d* nearest) {
+  const Vector3d p = *face.corners[0];
+  if (face.size == 1) {
     *nearest = p;
     return true;
   }
-  if (s.size == 2) {
+  const Vector3d e1 = *face.corners[1] - p;
+  if (face.size == 2) {
     const double u = -e1.dot(p) / e1.squaredNorm();
     *nearest = p + u * e1;
     return u > 0 && u < 1;
   }
-  if (s.size == 3) {
+  const Vector3d e2 = *face.corners[2] - p;
+  if (face.size == 3) {
     const double a = e1.squaredNorm(), b = e1.dot(e2), c = e2.squaredNorm();
     const double determinant = a * c - b * b;
     const double u = (b * e2.dot(p) - c * e1.dot(p)) / determinant;
@@ -43,6 +62,7 @@ bool ProjectOrigin(const Simplex& s, Vector3d* nearest) {
     *nearest = p + u * e1 + v * e2;
     return u > 0 && v > 0 && u + v < 1;  // false for NaN, too
   }
+  const Vector3d e3 = *face.corners[3] - p;
   const double volume = e1.dot(e2.cross(e3));
   const double u = -p.dot(e2.cross(e3)) / volume;
   const double v = -e1.dot(p.cross(e3)) / volume;
@@ -53,21 +73,24 @@ bool ProjectOrigin(const Simplex& s, Vector3d* nearest) {
 
 // Reduces the simplex to its smallest face that holds its point nearest to the origin.
 Vector3d NearestToOrigin(Simplex* simplex) {
-  Simplex best;
+  Face best;
   Vector3d nearest = Vector3d::Zero();
   double least = std::numeric_limits<double>::infinity();
   for (unsigned corners = 1; corners < (1u << simplex->size); ++corners) {
-    Simplex face;
-    for (int i = 0; i < simplex->size; ++i) {
-      if ((corners >> i & 1u) != 0) face.points.col(face.size++) = simplex->points.col(i);
-    }
+    const Face face = FaceOf(*simplex, corners);
     Vector3d candidate;
-    if (!ProjectOrigin(face, &candidate) || !(candidate.norm() < least)) continue;
-    least = candidate.norm();
+    if (!ProjectOrigin(face, &candidate)) continue;
+    const double length = candidate.norm();
+    if (!(length < least)) continue;
+    least = length;
     nearest = candidate;
     best = face;
   }
-  *simplex = best;
+  for (int i = 0; i < best.size; ++i) {  // in their order, so none is overwritten before it is read
+    const auto corner = static_cast<std::size_t>(i);
+    simplex->points[corner] = *best.corners[corner];
+  }
+  simplex->size = best.size;
   return nearest;
 }
 
@@ -84,7 +107,7 @@ double CoreDistance(const ConvexSolid& a, const ConvexSolid& b, const Eigen::Iso
     // No difference lies nearer to the origin than the plane through `w` across v.
     const Vector3d w = CoreSupport(a, -v) - X_AB * CoreSupport(b, X_AB.linear().transpose() * v);
     if (length - v.dot(w) / length <= kTolerance_m) break;
-    simplex.points.col(simplex.size++) = w;
+    simplex.points[static_cast<std::size_t>(simplex.size++)] = w;
     const Vector3d next = NearestToOrigin(&simplex);
     if (simplex.size == 4) return 0;            // the origin is inside: the cores overlap
     if (i > 0 && next.norm() >= length) break;  // as near as rounding allows

@@ -30,6 +30,7 @@ std::string TypeName(int type, const std::string& name) {
 std::vector<PictureGeom> PictureOf(const std::string& path, ModelStore* store) {
   constexpr int kLastGroupDrawn = 2;
   const MujocoModelPtr model = LoadModelFile(path, store);
+  model->nconmax = model->njmax = 0;  // nothing but the poses is asked for
   const MujocoDataPtr data = MakeMujocoData(*model);
   mj_kinematics(model.get(), data.get());
   std::vector<PictureGeom> picture;

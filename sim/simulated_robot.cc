@@ -1,10 +1,14 @@
 #include "sidestep/sim/simulated_robot.h"
 
+#include <cstddef>
 #include <stdexcept>
 #include <utility>
 
 namespace sidestep::sim {
 namespace {
+
+// Each tick is read before the next one.
+constexpr std::size_t kLogLength = 4;
 
 Eigen::VectorXd TorqueLimits(const robot::RobotModel& robot) {
   Eigen::VectorXd limits(robot.num_joints());
@@ -24,7 +28,7 @@ SimulatedRobot::SimulatedRobot(const robot::RobotModel& robot, World* world,
       stiffness_(robot.stiffness()),
       damping_(robot.damping()),
       torque_max_(TorqueLimits(robot)),
-      follower_(robot, control::TrackerLimits::Of(robot, v_scale), safety) {
+      follower_(robot, control::TrackerLimits::Of(robot, v_scale), safety, kLogLength) {
   const Eigen::VectorXd q = world_.q();
   if (q.size() != robot.num_joints()) {
     throw std::invalid_argument("SimulatedRobot: the world's arm has another number of joints");

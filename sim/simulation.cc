@@ -1,5 +1,7 @@
 #include "sidestep/sim/simulation.h"
 
+#include <utility>
+
 #include "sidestep/core/input_error.h"
 #include "sidestep/sim/arm_file.h"
 #include "sidestep/sim/mujoco_model.h"
@@ -47,16 +49,28 @@ MujocoModelPtr Compile(const std::string& xml, const scenarios::Scenario& scenar
   return model;
 }
 
+World MakeWorld(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
+                const ModelFolders& models, ModelStore* store) {
+  std::string xml = BuildWorldXml(scenario, robot.mount_links(), models, store);
+  MujocoModelPtr model = Compile(WithoutPictures(xml), scenario, robot, models, store);
+  return World(scenario, std::move(xml), std::move(model), robot.joint_names(),
+               StartOf(scenario, robot));
+}
+
+World MakeWorld(const scenarios::Scenario& scenario, const ModelFolders& models) {
+  std::string xml = BuildWorldXml(scenario, {}, models);
+  MujocoModelPtr model = LoadMujocoModel(WithoutPictures(xml), scenario.file + ": its world");
+  return World(scenario, std::move(xml), std::move(model), {}, Eigen::VectorXd());
+}
+
 }  // namespace
 
 Simulation::Simulation(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
                        const ModelFolders& models, const SensorMaker& make_sensor,
                        ModelStore* store)
-    : model_xml_(BuildWorldXml(scenario, robot.mount_links(), models, store)),
-      joints_(robot.joint_names()),
+    : joints_(robot.joint_names()),
       obstacles_(NamesOf(scenario.moving_obstacles)),
-      world_(scenario, Compile(model_xml_, scenario, robot, models, store), joints_,
-             StartOf(scenario, robot)),
+      world_(MakeWorld(scenario, robot, models, store)),
       truth_(world_),
       robot_(std::make_unique<SimulatedRobot>(
           robot, &world_, [this] { truth_.Observe(); }, scenario.velocity_limits ? 1 : kUnlimited,
@@ -66,10 +80,8 @@ Simulation::Simulation(const scenarios::Scenario& scenario, const robot::RobotMo
 
 Simulation::Simulation(const scenarios::Scenario& scenario, const ModelFolders& models,
                        const SensorMaker& make_sensor)
-    : model_xml_(BuildWorldXml(scenario, {}, models)),
-      obstacles_(NamesOf(scenario.moving_obstacles)),
-      world_(scenario, LoadMujocoModel(model_xml_, scenario.file + ": its world"), {},
-             Eigen::VectorXd()),
+    : obstacles_(NamesOf(scenario.moving_obstacles)),
+      world_(MakeWorld(scenario, models)),
       truth_(world_),
       robot_(std::make_unique<NoRobot>(&world_)) {
   MakeSensors(scenario, make_sensor);

@@ -42,14 +42,13 @@ class Simulation {
   robot::WorldTruth& truth() { return truth_; }
   const World& world() const { return world_; }
 
-  const std::string& model_xml() const { return model_xml_; }         ///< MJCF of the whole world
+  const std::string& model_xml() const { return world_.xml(); }       ///< MJCF of the whole world
   const std::vector<std::string>& joints() const { return joints_; }  ///< as in the MJCF
   const std::vector<std::string>& obstacles() const { return obstacles_; }  ///< mocap bodies
 
  private:
   void MakeSensors(const scenarios::Scenario& scenario, const SensorMaker& make_sensor);
 
-  std::string model_xml_;
   std::vector<std::string> joints_, obstacles_;
   World world_;
   SimulatedTruth truth_;

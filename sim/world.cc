@@ -10,28 +10,12 @@
 #include "sidestep/sim/tied_joints.h"
 
 namespace sidestep::sim {
-namespace {
-
-// Geoms that are only seen are met at each tick by everything that comes near their body. Those
-// that stand behind all others of their body need not be.
-void LeaveOutWhatIsOnlySeen(mjModel* model) {
-  for (int body = 0; body < model->nbody; ++body) {
-    int& count = model->body_geomnum[body];
-    const auto is_only_seen = [&](int geom) {
-      return model->geom_contype[geom] == 0 && model->geom_conaffinity[geom] == 0;
-    };
-    while (count > 0 && is_only_seen(model->body_geomadr[body] + count - 1)) --count;
-  }
-}
-
-}  // namespace
-
-World::World(const scenarios::Scenario& scenario, MujocoModelPtr model,
+World::World(const scenarios::Scenario& scenario, std::string xml, MujocoModelPtr model,
              const std::vector<std::string>& joints, const Eigen::VectorXd& q_start)
-    : model_(std::move(model)),
+    : xml_(std::move(xml)),
+      model_(std::move(model)),
       data_(MakeMujocoData(*model_)),
       obstacles_(scenario.moving_obstacles) {
-  LeaveOutWhatIsOnlySeen(model_.get());
   if (q_start.size() != static_cast<Eigen::Index>(joints.size()) || !q_start.allFinite()) {
     throw std::invalid_argument("World: q_start must hold one finite number for each joint");
   }

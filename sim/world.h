@@ -19,12 +19,13 @@ class World {
  public:
   static constexpr int kTicksPerSecond = 1000;
 
-  /// @param model what BuildWorldXml made of `scenario`, compiled.
+  /// @param xml what BuildWorldXml made of `scenario`.
+  /// @param model the same, compiled, with or without pictures.
   /// @param joints the arm's joints in the model; each must have one motor of gear 1.
   /// @param q_start where they begin, at rest.
   /// @throws InputError if the model has not these joints and motors; std::invalid_argument for a
   /// q_start of the wrong shape or not finite.
-  World(const scenarios::Scenario& scenario, MujocoModelPtr model,
+  World(const scenarios::Scenario& scenario, std::string xml, MujocoModelPtr model,
         const std::vector<std::string>& joints, const Eigen::VectorXd& q_start);
   World(const World&) = delete;
   World& operator=(const World&) = delete;
@@ -52,6 +53,7 @@ class World {
   Eigen::VectorXd motor_torque() const;
 
   const std::vector<scenarios::MovingObstacle>& obstacles() const { return obstacles_; }
+  const std::string& xml() const { return xml_; }  ///< MJCF of the whole world, to draw it
   const mjModel& model() const { return *model_; }
   const mjData& data() const { return *data_; }  ///< as it is now: not to be kept across a Step
 
@@ -66,6 +68,7 @@ class World {
   void ComputeWhatFollows();
   void CheckPhysics() const;
 
+  std::string xml_;
   MujocoModelPtr model_;
   MujocoDataPtr data_;
   std::vector<scenarios::MovingObstacle> obstacles_;

@@ -440,4 +440,12 @@ std::string BuildWorldXml(const scenarios::Scenario& scenario,
   return printer.CStr();
 }
 
+std::string WithoutPictures(std::string world_xml) {
+  const std::size_t masses_are_given = world_xml.find("inertiafromgeom=\"false\"");
+  if (masses_are_given != std::string::npos) {
+    world_xml.insert(masses_are_given, "discardvisual=\"true\" ");
+  }
+  return world_xml;
+}
+
 }  // namespace sidestep::sim

@@ -46,4 +46,8 @@ std::string BuildWorldXml(const scenarios::Scenario& scenario,
                           const std::vector<std::string>& mount_links, const ModelFolders& models,
                           ModelStore* store = nullptr);
 
+/// The same world for the physics alone: without geoms that are only seen, half of all, which
+/// MuJoCo would place at each tick. As it was if a body's mass may be told by such geoms.
+std::string WithoutPictures(std::string world_xml);
+
 }  // namespace sidestep::sim

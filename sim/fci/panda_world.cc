@@ -16,10 +16,11 @@ scenarios::Scenario PandaAlone() {
 std::unique_ptr<World> MakePandaWorld(const scenarios::Scenario& scenario,
                                       const robot::RobotModel& robot, const ModelFolders& models,
                                       const Eigen::VectorXd& q_start) {
-  MujocoModelPtr model = LoadMujocoModel(BuildWorldXml(scenario, robot.mount_links(), models),
-                                         scenario.file + ": its world");
+  std::string xml = BuildWorldXml(scenario, robot.mount_links(), models);
+  MujocoModelPtr model = LoadMujocoModel(WithoutPictures(xml), scenario.file + ": its world");
   CheckAgreement(robot, *model, RobotMjcf(scenario, models));
-  return std::make_unique<World>(scenario, std::move(model), robot.joint_names(), q_start);
+  return std::make_unique<World>(scenario, std::move(xml), std::move(model), robot.joint_names(),
+                                 q_start);
 }
 
 }  // namespace sidestep::sim::fci

@@ -42,8 +42,8 @@ PosedTags::PosedTags(const std::vector<Pose>& X_CO, const Eigen::Vector3d& size_
     body_.tags.push_back({tag.id, tag.size_m, scenarios::TagPose(size_m, tag.face)});
   }
   const std::string xml = sim::BuildWorldXml(scenario_, {}, "");
-  world_.emplace(scenario_, sim::LoadMujocoModel(xml, "posed_tags"), std::vector<std::string>(),
-                 Eigen::VectorXd());
+  world_.emplace(scenario_, xml, sim::LoadMujocoModel(xml, "posed_tags"),
+                 std::vector<std::string>(), Eigen::VectorXd());
   camera_.emplace(scenario_, *world_);
 }
 

@@ -33,8 +33,8 @@ class Passing {
                 "height: 60, field_of_view_rad: 0.9272952180016122, grey_noise: 0, exposure_s: " +
                 ShortestText(exposure_s) + "}}\nseed: 1\n",
             "passing.yaml")),
-        world_(scenario_, sim::LoadMujocoModel(sim::BuildWorldXml(scenario_, {}, ""), "passing"),
-               {}, Eigen::VectorXd()),
+        xml_(sim::BuildWorldXml(scenario_, {}, "")),
+        world_(scenario_, xml_, sim::LoadMujocoModel(xml_, "passing"), {}, Eigen::VectorXd()),
         camera_(scenario_, world_) {}
 
   std::optional<robot::Frame> Next() {
@@ -45,6 +45,7 @@ class Passing {
 
  private:
   scenarios::Scenario scenario_;
+  std::string xml_;
   sim::World world_;
   RenderedCamera camera_;
 };

@@ -34,8 +34,8 @@ TEST(ContactRoom, ThatIsMadeOnTheWayChangesNothing) {
   const std::string xml = BuildWorldXml(scenario, {}, kTestModels);
   const std::string small =
       Replaced(Replaced(xml, "nconmax=\"50\"", "nconmax=\"1\""), "njmax=\"250\"", "njmax=\"4\"");
-  World roomy(scenario, LoadMujocoModel(xml, "roomy"), {"turn", "lift"}, scenario.q_start);
-  World tight(scenario, LoadMujocoModel(small, "tight"), {"turn", "lift"}, scenario.q_start);
+  World roomy(scenario, xml, LoadMujocoModel(xml, "roomy"), {"turn", "lift"}, scenario.q_start);
+  World tight(scenario, small, LoadMujocoModel(small, "tight"), {"turn", "lift"}, scenario.q_start);
   const Eigen::Vector2d torque(3, -1);
   int most_contacts = 0;
   for (int tick = 0; tick < 1000; ++tick) {

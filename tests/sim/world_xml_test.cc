@@ -14,6 +14,7 @@
 #include "sidestep/core/input_error.h"
 #include "sidestep/sim/foreign_model.h"
 #include "sidestep/sim/mujoco_pose.h"
+#include "sidestep/sim/world.h"
 #include "sidestep/sim/world_geoms.h"
 #include "tests/sim/small_model.h"
 #include "tests/sim/two_link.h"
@@ -296,6 +297,39 @@ TEST(WorldXml, SaysWhichModelIsMissing) {
       [&] { BuildWorldXml(scenario, {}, kTestModels); },
       testing::ThrowsMessage<InputError>(
           std::string("two_link.yaml:1: robot.model: there is no 'ghost' in ") + kTestModels));
+}
+
+// The HSR, which is drawn by many geoms, runs into the Panda, which is drawn by as many.
+TEST(WorldXml, MovesToTheBitWithoutPictures) {
+  scenarios::Scenario scenario = TwoLinkScenario();
+  scenario.robot = "panda";
+  scenario.static_obstacles = {{"table", Pose::Translation({0.6, 0, 0.2}), Box{{0.6, 1.2, 0.4}}}};
+  scenario.moving_obstacles = {
+      Passing("cart", Box{{0.48, 0.55, 1.2}}, {0.4, 0.9, 0.6}, {0, -1, 0}, 1.4)};
+  scenario.moving_obstacles[0].appearance = "hsr";
+  const std::string models = SIDESTEP_SOURCE_DIR "/models";
+  const auto robot = robot::RobotModel::Load(models, "panda", Pose());
+  const Eigen::VectorXd q_start = robot.configurations().at("home");
+  const std::string xml = BuildWorldXml(scenario, {}, models);
+  World drawn(scenario, xml, LoadMujocoModel(xml, "drawn"), robot.joint_names(), q_start);
+  World bare(scenario, xml, LoadMujocoModel(WithoutPictures(xml), "bare"), robot.joint_names(),
+             q_start);
+  EXPECT_LT(2 * bare.model().ngeom, drawn.model().ngeom + 10);
+  int most_contacts = 0;
+  for (int tick = 0; tick < 1000; ++tick) {
+    drawn.Step(drawn.bias_torque());
+    bare.Step(bare.bias_torque());
+    most_contacts = std::max(most_contacts, bare.data().ncon);
+    ASSERT_EQ(drawn.q(), bare.q()) << tick;
+    ASSERT_EQ(drawn.v(), bare.v()) << tick;
+    ASSERT_EQ(drawn.data().ncon, bare.data().ncon) << tick;
+  }
+  EXPECT_GT(most_contacts, 1);
+}
+
+TEST(WorldXml, KeepsPicturesThatMayTellMasses) {
+  const std::string xml = BuildWorldXml(FullScenario(), {}, kTestModels);
+  EXPECT_EQ(WithoutPictures(xml), xml);
 }
 
 }  // namespace
