@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "sidestep/bench/scenario_planner.h"
@@ -32,19 +33,20 @@ std::vector<double> HorizonsToTry(const scenarios::Scenario& scenario,
   return {horizon_s, kMore * horizon_s};
 }
 
-}  // namespace
-
-FreePath SearchFreePath(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
-                        int max_guesses, std::uint64_t seed) {
-  const sdf::ShapeField field =
-      TrueWorld(scenario, scenario.epsilon_m + robot.largest_sphere_radius_m());
+// @param first_free the first state of the motion that is not given.
+FreePath Search(const PathStart& start, int first_free, const sdf::DistanceField& field,
+                const scenarios::Scenario& scenario, const robot::RobotModel& robot,
+                int max_guesses, std::uint64_t seed) {
   const auto planner = MakePlanner(scenario, robot);
   std::vector<planner::PlanRequest> requests;
   for (const double horizon_s : HorizonsToTry(scenario, *planner)) {
     requests.push_back(RequestOf(scenario, horizon_s));
-    requests.back().field = &field;
-    requests.back().num_fixed =
-        1 + static_cast<int>(std::ceil(scenario.longest_latency_s() / scenario.step_s - 1e-9));
+    planner::PlanRequest& request = requests.back();
+    request.field = &field;
+    request.start = start.t;
+    request.q_start = start.q;
+    request.v_start = start.v;
+    request.num_fixed = first_free;
   }
 
   const Eigen::VectorXd scale = robot::ToleranceScale(robot);
@@ -66,15 +68,41 @@ FreePath SearchFreePath(const scenarios::Scenario& scenario, const robot::RobotM
         planner::GreatestToolSpeed_m_s(robot, *motion, 0) > scenario.safety.tool_speed_m_s) {
       continue;
     }
-    const EpisodeTime begin(0), end(motion->t_s(request.num_states - 1) + kAfterGoal_s);
+    const EpisodeTime end =
+        start.t + HorizonOffset(motion->t_s(request.num_states - 1) + kAfterGoal_s);
     const double clearance_m =
-        planner::MeasureClearance(robot, field, *motion, begin, begin, end, kJudgeStep_s).least_m;
+        planner::MeasureClearance(robot, field, *motion, start.t, start.t, end, kJudgeStep_s)
+            .least_m;
     if (clearance_m <= best.clearance_m) continue;
     best.clearance_m = clearance_m;
     best.trajectory = *motion;
     best.found = clearance_m > 0;
   }
   return best;
+}
+
+}  // namespace
+
+FreePath SearchFreePath(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
+                        int max_guesses, std::uint64_t seed) {
+  const sdf::ShapeField field =
+      TrueWorld(scenario, scenario.epsilon_m + robot.largest_sphere_radius_m());
+  const int resting =
+      static_cast<int>(std::ceil(scenario.longest_latency_s() / scenario.step_s - 1e-9));
+  const PathStart start = {EpisodeTime(0), scenario.q_start,
+                           Eigen::VectorXd::Zero(scenario.q_start.size())};
+  return Search(start, 1 + resting, field, scenario, robot, max_guesses, seed);
+}
+
+FreePath SearchFreePathFrom(const PathStart& start, const sdf::DistanceField& field,
+                            const scenarios::Scenario& scenario, const robot::RobotModel& robot,
+                            int max_guesses, std::uint64_t seed) {
+  const Eigen::Index n = robot.num_joints();
+  if (start.q.size() != n || start.v.size() != n || !start.q.allFinite() || !start.v.allFinite()) {
+    throw std::invalid_argument(
+        "SearchFreePathFrom: the start must hold finite q and v of shape n");
+  }
+  return Search(start, 1, field, scenario, robot, max_guesses, seed);
 }
 
 }  // namespace sidestep::bench

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 
+#include "sidestep/core/time.h"
 #include "sidestep/core/trajectory.h"
 #include "sidestep/robot/robot_model.h"
 #include "sidestep/scenarios/scenario.h"
+#include "sidestep/sdf/distance_field.h"
 
 namespace sidestep::bench {
 
@@ -12,7 +15,13 @@ struct FreePath {
   bool found = false;
   int guesses = 0;         ///< tried until then
   double clearance_m = 0;  ///< of the best motion: least over all spheres and times
-  Trajectory trajectory;   ///< the best motion, from t = 0
+  Trajectory trajectory;   ///< the best motion; its time 0 is when the search begins
+};
+
+/// Where and how a motion begins.
+struct PathStart {
+  EpisodeTime t;
+  Eigen::VectorXd q, v;  ///< rad and rad/s, shape n each
 };
 
 /// Looks long for a motion from start to goal that touches nothing, knowing where everything will
@@ -27,5 +36,12 @@ struct FreePath {
 /// @param scenario with its task resolved (bench/resolve.h).
 FreePath SearchFreePath(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
                         int max_guesses, std::uint64_t seed);
+
+/// The same from the midst of an episode, in the world that `field` tells of: the motion begins at
+/// once, with the velocity that the arm has.
+/// @throws std::invalid_argument for a start of another shape, or one that is not finite.
+FreePath SearchFreePathFrom(const PathStart& start, const sdf::DistanceField& field,
+                            const scenarios::Scenario& scenario, const robot::RobotModel& robot,
+                            int max_guesses, std::uint64_t seed);
 
 }  // namespace sidestep::bench

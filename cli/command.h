@@ -29,6 +29,7 @@ void AddReproduceCommand(CommandLine& line);
 void AddStudyCommand(CommandLine& line);
 void AddSweepCommand(CommandLine& line);
 void AddDoctorCommand(CommandLine& line);
+void AddHindsightCommand(CommandLine& line);
 void AddFieldCommand(CommandLine& line);
 void AddFciServerCommand(CommandLine& line);
 void AddNewScenarioCommand(CommandLine& line);

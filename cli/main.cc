@@ -64,6 +64,7 @@ int Run(int argc, char** argv) {
   sidestep::cli::AddStudyCommand(line);
   sidestep::cli::AddSweepCommand(line);
   sidestep::cli::AddAuditCommand(line);
+  sidestep::cli::AddHindsightCommand(line);
   sidestep::cli::AddBenchCommand(line);
   sidestep::cli::AddImportCommand(line);
   sidestep::cli::AddListCommand(line);
