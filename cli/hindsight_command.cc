@@ -25,11 +25,8 @@ struct HindsightOptions {
 };
 
 std::string EndOf(const bench::Hindsight& hindsight) {
-  if (hindsight.contact) {
-    return fmt::format("touched something at {:.2f} s", hindsight.contact->seconds());
-  }
-  return hindsight.verdict == bench::HindsightVerdict::kReached ? "reached its goal untouched"
-                                                                : "never reached its goal";
+  if (!hindsight.contact) return "never reached its goal";
+  return fmt::format("touched something at {:.2f} s", hindsight.contact->seconds());
 }
 
 std::string WayOf(bool found, double clearance_m) {
@@ -63,6 +60,10 @@ void LookBackAt(const render::NamedRecording& trace, const HindsightOptions& opt
   if (!why_not.empty()) throw InputError(trace.name, why_not);
   const bench::Hindsight hindsight =
       bench::LookBack(recording, scenario, robot, options.guesses, scenario.seed);
+  if (hindsight.verdict == bench::HindsightVerdict::kReached) {
+    Print("{}: reached its goal untouched\n", trace.name);
+    return;
+  }
   Print("{}: {}: {}\n", trace.name, EndOf(hindsight), bench::ToString(hindsight.verdict));
   if (!options.brief) PrintCycles(hindsight.cycles);
 }
