@@ -17,7 +17,7 @@
 namespace sidestep::bench {
 namespace {
 
-constexpr double kJudgeStep_s = 0.005, kAfterGoal_s = 0.5;
+constexpr double kFreePathStep_s = 0.005, kAfterGoal_s = 0.5;
 
 bool IsToolHeldBack(const scenarios::Scenario& scenario) {
   return std::isfinite(scenario.safety.tool_speed_m_s);
@@ -68,7 +68,8 @@ FreePath SearchFreePath(const scenarios::Scenario& scenario, const robot::RobotM
     }
     const EpisodeTime begin(0), end(motion->t_s(request.num_states - 1) + kAfterGoal_s);
     const double clearance_m =
-        planner::MeasureClearance(robot, field, *motion, begin, begin, end, kJudgeStep_s).least_m;
+        planner::MeasureClearance(robot, field, *motion, begin, begin, end, kFreePathStep_s)
+            .least_m;
     if (clearance_m <= best.clearance_m) continue;
     best.clearance_m = clearance_m;
     best.trajectory = *motion;

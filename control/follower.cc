@@ -9,9 +9,9 @@
 namespace sidestep::control {
 namespace {
 
-constexpr std::size_t kLogLength = 4096;  // ticks: 4 s
-constexpr double kQuickening_per_s = 4;   // from full speed to rest in a quarter of a second
-constexpr double kForeseen_per_s = 2;     // what is seen to come is slowed down for more gently
+constexpr std::size_t kTickLogLength = 4096;  // ticks: 4 s
+constexpr double kQuickening_per_s = 4;       // from full speed to rest in a quarter of a second
+constexpr double kForeseen_per_s = 2;         // what is seen to come is slowed down for more gently
 
 TrackerLimits LimitsUnder(const SafetySettings& safety, const robot::RobotModel& robot,
                           const TrackerLimits& limits) {
@@ -33,7 +33,7 @@ Follower::Follower(const TrackerLimits& limits, std::size_t log_length)
 
 Follower::Follower(const robot::RobotModel& robot, const TrackerLimits& limits,
                    const SafetySettings& safety)
-    : Follower(LimitsUnder(safety, robot, limits), kLogLength) {
+    : Follower(LimitsUnder(safety, robot, limits), kTickLogLength) {
   if (safety.profile != SafetyProfile::kOff) supervisor_.emplace(robot, tracker_, safety);
 }
 
