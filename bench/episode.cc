@@ -41,9 +41,9 @@ constexpr double kPoll_s = 2e-3;       // on a wall clock, how long nobody looks
 constexpr double kLongestStop_s = 3;   // an arm that is told to hold rests by then
 constexpr double kUsualStop_s = 0.25;  // under the profile lab
 constexpr double kStill_rad_s = 0.01;
-constexpr double kTick_s = 1.5e-3;      // a robot has looked at what it was told by then
-constexpr double kPlanningShare = 0.9;  // of a cycle in real time; judging the plan is the rest
-constexpr double kHandOver_s = 5e-3;    // a plan is with the robot so long before it takes effect
+constexpr double kSeesCommand_s = 1.5e-3;  // a robot has looked at what it was told by then
+constexpr double kPlanningShare = 0.9;     // of a cycle in real time; judging the plan is the rest
+constexpr double kHandOver_s = 5e-3;  // a plan is with the robot so long before it takes effect
 
 constexpr const char* kLate = "late";  // the status of a plan that came after its moment
 
@@ -350,7 +350,7 @@ class Loop {
     replanner_.Delay(HorizonOffset(status.lag.seconds() - lag_.seconds()));
     lag_ = status.lag;
     // What begins anew, and is to begin or just has, may be followed from the next tick on.
-    const bool may_go_on = !status.is_held && now_s_ - begun_anew_s_ <= kTick_s;
+    const bool may_go_on = !status.is_held && now_s_ - begun_anew_s_ <= kSeesCommand_s;
     if (!may_go_on && status.mode == robot::RobotMode::kHolding) {
       // It has left its plan by itself, and begins anew when it rests.
       world_.robot->Hold();

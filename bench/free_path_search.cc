@@ -18,7 +18,7 @@
 namespace sidestep::bench {
 namespace {
 
-constexpr double kJudgeStep_s = 0.005, kAfterGoal_s = 0.5;
+constexpr double kFreePathStep_s = 0.005, kAfterGoal_s = 0.5;
 
 bool IsToolHeldBack(const scenarios::Scenario& scenario) {
   return std::isfinite(scenario.safety.tool_speed_m_s);
@@ -71,7 +71,7 @@ FreePath Search(const PathStart& start, int first_free, const sdf::DistanceField
     const EpisodeTime end =
         start.t + HorizonOffset(motion->t_s(request.num_states - 1) + kAfterGoal_s);
     const double clearance_m =
-        planner::MeasureClearance(robot, field, *motion, start.t, start.t, end, kJudgeStep_s)
+        planner::MeasureClearance(robot, field, *motion, start.t, start.t, end, kFreePathStep_s)
             .least_m;
     if (clearance_m <= best.clearance_m) continue;
     best.clearance_m = clearance_m;

@@ -11,7 +11,7 @@
 namespace sidestep::bench {
 namespace {
 
-std::optional<EpisodeTime> FirstContact(const record::Recording& recording) {
+std::optional<EpisodeTime> FirstTouch(const record::Recording& recording) {
   for (const TruthSample& sample : recording.truth) {
     if (sample.in_contact) return EpisodeTime(sample.contact_s);
   }
@@ -67,7 +67,7 @@ Hindsight LookBack(const record::Recording& recording, const scenarios::Scenario
   const std::string why_not = WhyNoRecordedFields(recording, scenario);
   if (!why_not.empty()) throw std::invalid_argument("LookBack: " + why_not);
   Hindsight hindsight;
-  hindsight.contact = FirstContact(recording);
+  hindsight.contact = FirstTouch(recording);
   if (!hindsight.contact && HasReached(recording)) return hindsight;
   const EpisodeTime last = hindsight.contact.value_or(recording.control.back().t);
   const double reach_m = scenario.epsilon_m + robot.largest_sphere_radius_m();

@@ -1,5 +1,7 @@
 #include "sidestep/bench/json_text.h"
 
+#include <cmath>
+
 #include "sidestep/core/utf8.h"
 
 namespace sidestep::bench {
@@ -30,6 +32,10 @@ std::string JsonText(nlohmann::ordered_json json) {
 std::string JsonLine(nlohmann::ordered_json json) {
   EscapeAll(json);
   return json.dump();
+}
+
+nlohmann::ordered_json NumberOrNull(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
 }  // namespace sidestep::bench

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "sidestep/bench/outcome.h"
@@ -15,41 +14,40 @@
 namespace sidestep::bench {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr const char* kNothing = "–";
+constexpr const char* kEmptyCell = "–";
 
 bool ReachedGoal(const RunRow& row) { return row.outcome == ToString(Outcome::kGoal); }
 
 double MetricOf(const RunRow& row, const char* name) {
   const auto found = row.metrics.find(name);
-  return found == row.metrics.end() ? kNone : found->second;
+  return found == row.metrics.end() ? kNaN : found->second;
 }
 
 // What rows are compared by, beside whether they reached the goal.
-struct Measure {
+struct ComparedMeasure {
   const char* title;
   int digits;
   double (*of)(const RunRow&);
 };
 
-const Measure kMeasures[] = {
+const ComparedMeasure kComparedMeasures[] = {
     {"clearance [mm]", 1, [](const RunRow& row) { return 1e3 * MetricOf(row, "min_clearance_m"); }},
     {"time [s]", 3,
-     [](const RunRow& row) { return ReachedGoal(row) ? MetricOf(row, "time_to_goal_s") : kNone; }},
+     [](const RunRow& row) { return ReachedGoal(row) ? MetricOf(row, "time_to_goal_s") : kNaN; }},
     {"jerk [rad/s³]", 1,
-     [](const RunRow& row) { return ReachedGoal(row) ? MetricOf(row, "jerk_rms") : kNone; }},
+     [](const RunRow& row) { return ReachedGoal(row) ? MetricOf(row, "jerk_rms") : kNaN; }},
 };
 
 // One episode under two treatments: what is looked at, and what it is set beside.
-struct Pair {
+struct RowPair {
   const RunRow* row;
   const RunRow* beside;
   int cluster;  // pairs of one seed resemble each other
 };
 
-std::vector<double> Values(const std::vector<Pair>& pairs, const Measure& measure) {
+std::vector<double> Values(const std::vector<RowPair>& pairs, const ComparedMeasure& measure) {
   std::vector<double> values;
-  for (const Pair& pair : pairs) {
+  for (const RowPair& pair : pairs) {
     const double value = measure.of(*pair.row);
     if (std::isfinite(value)) values.push_back(value);
   }
@@ -65,10 +63,10 @@ std::string WithInterval(double difference, const Interval& interval, int digits
   return text;
 }
 
-std::string RateDifferenceText(const std::vector<Pair>& pairs) {
-  if (pairs.empty()) return kNothing;
+std::string RateDifferenceText(const std::vector<RowPair>& pairs) {
+  if (pairs.empty()) return kEmptyCell;
   std::vector<PairedOutcome> outcomes;
-  for (const Pair& pair : pairs) {
+  for (const RowPair& pair : pairs) {
     outcomes.push_back({pair.cluster, ReachedGoal(*pair.row), ReachedGoal(*pair.beside)});
   }
   const PairedRates rates = ComparePairedRates(outcomes);
@@ -76,39 +74,39 @@ std::string RateDifferenceText(const std::vector<Pair>& pairs) {
                       1);
 }
 
-std::string DifferenceText(const std::vector<Pair>& pairs, const Measure& measure) {
+std::string DifferenceText(const std::vector<RowPair>& pairs, const ComparedMeasure& measure) {
   std::vector<PairedNumber> numbers;
-  for (const Pair& pair : pairs) {
+  for (const RowPair& pair : pairs) {
     const double value = measure.of(*pair.row), beside = measure.of(*pair.beside);
     if (std::isfinite(value) && std::isfinite(beside)) {
       numbers.push_back({pair.cluster, value, beside});
     }
   }
-  if (numbers.empty()) return kNothing;
+  if (numbers.empty()) return kEmptyCell;
   const PairedMedians medians = ComparePairedMedians(numbers);
   return WithInterval(medians.difference, medians.interval, measure.digits);
 }
 
-std::string RowText(const std::string& down, const std::string& across,
-                    const std::vector<Pair>& pairs, bool is_first) {
+std::string TableRowText(const std::string& down, const std::string& across,
+                         const std::vector<RowPair>& pairs, bool is_first) {
   const auto goals = std::count_if(pairs.begin(), pairs.end(),
-                                   [](const Pair& pair) { return ReachedGoal(*pair.row); });
+                                   [](const RowPair& pair) { return ReachedGoal(*pair.row); });
   std::string text = fmt::format("| {} | {} | {} |", down, across, pairs.size());
-  text += pairs.empty() ? fmt::format(" {} |", kNothing)
+  text += pairs.empty() ? fmt::format(" {} |", kEmptyCell)
                         : fmt::format(" {:.1f} |", 100.0 * static_cast<double>(goals) /
                                                        static_cast<double>(pairs.size()));
-  text += fmt::format(" {} |", is_first ? kNothing : RateDifferenceText(pairs));
-  for (const Measure& measure : kMeasures) {
+  text += fmt::format(" {} |", is_first ? kEmptyCell : RateDifferenceText(pairs));
+  for (const ComparedMeasure& measure : kComparedMeasures) {
     const double median = Quantile(Values(pairs, measure), 0.5);
     text += std::isfinite(median) ? fmt::format(" {:.{}f} |", median, measure.digits)
-                                  : fmt::format(" {} |", kNothing);
-    text += fmt::format(" {} |", is_first ? kNothing : DifferenceText(pairs, measure));
+                                  : fmt::format(" {} |", kEmptyCell);
+    text += fmt::format(" {} |", is_first ? kEmptyCell : DifferenceText(pairs, measure));
   }
   return text + "\n";
 }
 
 // What episodes agree in that differ by the factor across alone.
-Factors AllElse(const RunRow& row, const std::string& across) {
+Factors FactorsBut(const RunRow& row, const std::string& across) {
   Factors all_else = row.factors;
   all_else.erase(across);
   return all_else;
@@ -120,22 +118,22 @@ using Treated = std::map<std::string, const RunRow*>;
 std::map<Factors, Treated> ByAllElse(const std::vector<RunRow>& rows, const std::string& across) {
   std::map<Factors, Treated> episodes;
   for (const RunRow& row : rows) {
-    if (row.outcome != kFailed) episodes[AllElse(row, across)][row.factors.at(across)] = &row;
+    if (row.outcome != kFailed) episodes[FactorsBut(row, across)][row.factors.at(across)] = &row;
   }
   return episodes;
 }
 
 // The pairs of two values across, in the rows' order; `is_asked` chooses by all other factors.
 template <class IsAsked>
-std::vector<Pair> PairsOf(const std::vector<RunRow>& rows,
-                          const std::map<Factors, Treated>& episodes, const std::string& across,
-                          const std::string& value, const std::string& beside,
-                          const IsAsked& is_asked) {
-  std::vector<Pair> pairs;
+std::vector<RowPair> RowPairsOf(const std::vector<RunRow>& rows,
+                                const std::map<Factors, Treated>& episodes,
+                                const std::string& across, const std::string& value,
+                                const std::string& beside, const IsAsked& is_asked) {
+  std::vector<RowPair> pairs;
   std::map<std::string, int> seeds;
   for (const RunRow& row : rows) {
     if (row.outcome == kFailed || row.factors.at(across) != value) continue;
-    const Factors all_else = AllElse(row, across);
+    const Factors all_else = FactorsBut(row, across);
     const Treated& treated = episodes.at(all_else);
     const auto other = treated.find(beside);
     if (!is_asked(all_else) || other == treated.end()) continue;
@@ -154,7 +152,7 @@ std::string HeadText(const TableAxes& axes) {
   std::string text = "| " + TableCell(axes.down) + " | " + TableCell(axes.across) +
                      " | pairs | goal [%] | difference |";
   std::string rule = "|---|---|---|---|---|";
-  for (const Measure& measure : kMeasures) {
+  for (const ComparedMeasure& measure : kComparedMeasures) {
     text += fmt::format(" {} | difference |", measure.title);
     rule += "---|---|";
   }
@@ -171,9 +169,9 @@ std::string PairedTable(const std::vector<RunRow>& rows, const TableAxes& axes) 
   std::string text = HeadText(axes);
   const auto add_rows = [&](const std::string& title, const auto& is_asked) {
     for (const std::string& column : columns) {
-      text += RowText(title, TableCell(column),
-                      PairsOf(rows, episodes, across, column, columns.front(), is_asked),
-                      column == columns.front());
+      text += TableRowText(title, TableCell(column),
+                           RowPairsOf(rows, episodes, across, column, columns.front(), is_asked),
+                           column == columns.front());
     }
   };
   if (!down.empty()) {

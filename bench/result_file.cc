@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -23,29 +22,23 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::uintmax_t kMaxResultBytes = 1 << 24;
 
-Json NumberOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Json TextOrNull(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 
 std::string TextIn(const Json& value) { return value.is_null() ? "" : value.get<std::string>(); }
-
-double NumberOrNaN(const Json& value) {
-  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
-}
 
 // What results of earlier programs do not tell.
 double IfThere(const Json& map, const std::string& key) {
   return NumberOrNaN(map.contains(key) ? map[key] : Json(nullptr));
 }
 
-const Json& At(const Json& map, const std::string& key, const std::string& path) {
+const Json& EntryOf(const Json& map, const std::string& key, const std::string& path) {
   if (!map.is_object() || !map.contains(key)) {
     throw InputError(path, "is not a whole result: '" + key + "' is missing");
   }
   return map[key];
 }
 
-Json ValueOf(const Metric& metric, double value) {
+Json JsonValueOf(const Metric& metric, double value) {
   if (std::string(metric.unit) == "count") return Json(std::llround(value));
   return NumberOrNull(value);
 }
@@ -72,17 +65,17 @@ Json AnswerTable(const std::vector<double>& seconds) {
 
 RunClock ClockIn(const Json& wall_clock, const std::string& path) {
   const auto number = [&](const Json& map, const char* key) {
-    return NumberOrNaN(At(map, key, path));
+    return NumberOrNaN(EntryOf(map, key, path));
   };
-  const Json& cycle = At(At(wall_clock, "cycle_cpu", path), "cycle", path);
+  const Json& cycle = EntryOf(EntryOf(wall_clock, "cycle_cpu", path), "cycle", path);
   RunClock clock;
   clock.episode_s = number(wall_clock, "episode_s");
   clock.cycle_p50_ms = number(cycle, "p50_ms");
   clock.cycle_p95_ms = number(cycle, "p95_ms");
   clock.cycle_p99_ms = number(cycle, "p99_ms");
   clock.cycle_max_ms = IfThere(cycle, "max_ms");
-  At(wall_clock, "cycles_over_charge", path).get_to(clock.cycles_over_charge);
-  At(wall_clock, "late_plans", path).get_to(clock.late_plans);
+  EntryOf(wall_clock, "cycles_over_charge", path).get_to(clock.cycles_over_charge);
+  EntryOf(wall_clock, "late_plans", path).get_to(clock.late_plans);
   return clock;
 }
 
@@ -143,7 +136,7 @@ std::string ResultJson(const EpisodeResult& result, const scenarios::Scenario& s
     json["would_trip"].push_back(metric.name);
   }
   for (const Metric& metric : Metrics()) {
-    json[metric.name] = ValueOf(metric, row.metrics.at(metric.name));
+    json[metric.name] = JsonValueOf(metric, row.metrics.at(metric.name));
   }
   json["parameters"] = Json::parse(YamlToJson(scenarios::ToYaml(scenario)));
   json["identity"] = {
@@ -173,7 +166,7 @@ StoredResult ReadResult(const std::string& path) {
   if (!json.is_object() || !json.contains("format") || json["format"] != "sidestep-result-1") {
     throw InputError(path, "is not a result.json of sidestep");
   }
-  const auto at = [&](const std::string& key) -> const Json& { return At(json, key, path); };
+  const auto at = [&](const std::string& key) -> const Json& { return EntryOf(json, key, path); };
   StoredResult stored;
   RunRow& row = stored.row;
   try {
@@ -193,8 +186,8 @@ StoredResult ReadResult(const std::string& path) {
     for (const Metric& metric : Metrics()) {
       row.metrics[metric.name] = NumberOrNaN(at(metric.name));
     }
-    row.identity.scenario = At(at("identity"), "scenario", path);
-    row.identity.models = At(at("identity"), "models", path);
+    row.identity.scenario = EntryOf(at("identity"), "scenario", path);
+    row.identity.models = EntryOf(at("identity"), "models", path);
     const auto build = stored.versions.find("build_id");
     if (build != stored.versions.end()) row.identity.build = build->second;
     row.clock = ClockIn(at("wall_clock"), path);

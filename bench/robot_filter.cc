@@ -8,7 +8,7 @@
 namespace sidestep::bench {
 namespace {
 
-constexpr double kSigmas = 4;
+constexpr double kReachSigmas = 4;
 
 struct Ball {
   Eigen::Vector3d a, b;  // the ends of its axis
@@ -58,7 +58,7 @@ void RobotFilter::Remove(const Eigen::VectorXd& q, Scan* scan) const {
     const Eigen::Vector3d p_CP = scan->p_CP.col(n);
     const Eigen::Vector3d p_WP = scan->X_WC.translation() + R_WC * p_CP;
     const double deviation_m = margin.noise_per_m * std::abs(p_CP.z()) * p_CP.norm();
-    const double reach_m = margin.fixed_m + kSigmas * deviation_m;
+    const double reach_m = margin.fixed_m + kReachSigmas * deviation_m;
     const bool is_own = std::any_of(balls.begin(), balls.end(), [&](const Ball& ball) {
       return Distance(ball, p_WP) <= reach_m;
     });

@@ -9,10 +9,10 @@
 namespace sidestep::bench {
 namespace {
 
-constexpr std::size_t kMostValues = 12;  // of a factor that are listed
+constexpr std::size_t kMostListed = 12;  // of a factor that are listed
 
 // A row's value of a factor; without a name, all rows are alike.
-std::string ValueOf(const RunRow& row, const std::string& factor) {
+std::string FactorValueOf(const RunRow& row, const std::string& factor) {
   return factor.empty() ? "episodes" : row.factors.at(factor);
 }
 
@@ -29,7 +29,7 @@ struct Tally {
 // `a, b, c`; of many, those at the ends.
 std::string Listed(const std::vector<std::string>& values) {
   const std::string count = std::to_string(values.size());
-  if (values.size() <= kMostValues) return Joined(values);
+  if (values.size() <= kMostListed) return Joined(values);
   return values[0] + ", " + values[1] + ", ..., " + values.back() + " (" + count + ")";
 }
 
@@ -76,7 +76,7 @@ std::vector<std::string> FactorValues(const std::vector<RunRow>& rows, const std
   std::vector<std::string> values;
   std::set<std::string> seen;
   for (const RunRow& row : rows) {
-    const std::string value = ValueOf(row, factor);
+    const std::string value = FactorValueOf(row, factor);
     if (seen.insert(value).second) values.push_back(value);
   }
   return values;
@@ -91,8 +91,8 @@ std::string OutcomeTable(const std::vector<RunRow>& rows, const TableAxes& axes)
   std::map<std::string, Tally> totals;
   std::map<std::string, std::map<std::string, int>> endings;
   for (const RunRow& row : rows) {
-    const std::string column = ValueOf(row, across);
-    cells[ValueOf(row, down)][column].Count(row);
+    const std::string column = FactorValueOf(row, across);
+    cells[FactorValueOf(row, down)][column].Count(row);
     totals[column].Count(row);
     ++endings[row.outcome][column];
   }

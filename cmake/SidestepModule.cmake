@@ -34,6 +34,15 @@ function(sidestep_module name)
     PUBLIC ${ARG_DEPENDS}
     PRIVATE $<BUILD_INTERFACE:sidestep_warnings> ${ARG_PRIVATE_DEPENDS})
   sidestep_use_precompiled_headers(sidestep_${name} sidestep_precompiled_module)
+  # The same templates are instantiated once a batch, which takes the compiler less than half the
+  # time. Only where headers are precompiled: builds without show what a file fails to include.
+  set_target_properties(sidestep_${name} PROPERTIES UNITY_BUILD ${SIDESTEP_PRECOMPILE_HEADERS}
+                                                   UNITY_BUILD_BATCH_SIZE 12)
+  # Highway includes its kernels again for each instruction set, and a program with further planners,
+  # predictors, sensors or metrics brings its own registry in place of the library's.
+  set(alone ${ARG_SOURCES})
+  list(FILTER alone INCLUDE REGEX "(_kernels|registry|^sensors)[.]cc$")
+  set_source_files_properties(${alone} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   set_property(GLOBAL APPEND PROPERTY SIDESTEP_MODULES sidestep_${name})
   install(
     TARGETS sidestep_${name}

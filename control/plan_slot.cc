@@ -6,7 +6,7 @@ namespace sidestep::control {
 namespace {
 
 // Starts are sums of steps, rounded: what begins a rounding error after a tick begins with it.
-constexpr HorizonOffset kRounding(1e-9);
+constexpr HorizonOffset kStartRounding(1e-9);
 
 }  // namespace
 
@@ -41,7 +41,7 @@ const PlanSlot::Plan* PlanSlot::PlanAt(EpisodeTime t) noexcept {
   Plan** link = &known_;
   while (*link != nullptr && (*link)->number > recalled) {
     Plan* const plan = *link;
-    if (plan->start <= t + kRounding) {
+    if (plan->start <= t + kStartRounding) {
       Retire(std::exchange(plan->before, nullptr));
       return plan;
     }

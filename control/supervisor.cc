@@ -13,7 +13,7 @@
 namespace sidestep::control {
 namespace {
 
-constexpr std::size_t kLogLength = 1024;
+constexpr std::size_t kFindingLogLength = 1024;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Of the tool's speed: a compliant arm comes up to 2.3 % over what it is told.
@@ -29,7 +29,7 @@ constexpr HorizonOffset kToldAgain(
 constexpr double kEasedShare = 0.9;  // of the pace that would do, so that the arm can catch up
 
 // Differences of sent positions are wrong by some 1e-15 rad, divided by the tick once a difference.
-constexpr double kRounding = 1e-6;
+constexpr double kUseRounding = 1e-6;
 
 // NaN if anything is.
 double Largest(const JointVector& a, const JointVector& b, const JointVector& scale) {
@@ -82,7 +82,7 @@ Supervisor::Supervisor(const robot::RobotModel& robot, const JerkLimitedTracker&
       settings_(settings),
       capsules_(robot),
       scale_(robot::ToleranceScale(robot)),
-      findings_(kLogLength),
+      findings_(kFindingLogLength),
       tool_gate_(robot, settings.tool_speed_m_s) {
   if (robot.capsules().empty()) {
     throw std::invalid_argument("Supervisor: the robot has no capsules");
@@ -214,7 +214,7 @@ void Supervisor::JudgeCommand(const Measured& measured, const JointPoint& next, 
                     std::abs(jerk) / limits.jerk_max,
                     next.q(j) < limits.q_min || next.q(j) > limits.q_max ? kInfinity : 0});
   }
-  Find(SafetyCheck::kLimits, Reaction::kBrake, !(use <= 1 + kRounding), use, 1);
+  Find(SafetyCheck::kLimits, Reaction::kBrake, !(use <= 1 + kUseRounding), use, 1);
 }
 
 Supervisor::Reach Supervisor::ReachAfter(const ObstacleState& obstacle, double after_s) const {

@@ -16,7 +16,7 @@
 namespace sidestep {
 namespace {
 
-constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{1} << 30;
+constexpr std::uintmax_t kMaxCsvBytes = std::uintmax_t{1} << 30;
 constexpr std::size_t kMaxShown = 40;  // bytes of a broken field in a message
 
 std::string Field(const std::string& bytes) {
@@ -127,7 +127,7 @@ CsvFile ParseCsv(const std::string& bytes, const std::string& name) {
 }
 
 CsvFile ReadCsv(const std::string& path) {
-  return ParseCsv(ReadTextFile(path, kMaxFileBytes), path);
+  return ParseCsv(ReadTextFile(path, kMaxCsvBytes), path);
 }
 
 }  // namespace sidestep

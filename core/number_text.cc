@@ -14,6 +14,8 @@ std::string ShortestText(double value) {
   return std::string(text, end.ptr);
 }
 
+std::string ShortestNumber(double value) { return ShortestText(value + 0.0); }
+
 std::string FiniteText(const char* format, double value, const std::string& otherwise) {
   return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : otherwise;
 }

@@ -8,6 +8,9 @@ namespace sidestep {
 /// nan, inf, -inf.
 std::string ShortestText(double value);
 
+/// The same with 0 for -0, as people write numbers.
+std::string ShortestNumber(double value);
+
 /// A number for people, and what to say where there is none.
 /// @param format of the library fmt with one field, e.g. "{:.2f} s".
 /// @return `otherwise` if the value is not finite.

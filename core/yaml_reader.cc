@@ -22,7 +22,7 @@ namespace {
 using Kind = YamlValue::Kind;
 
 // Far above any file a person writes, far below what would make the parser slow.
-constexpr std::uintmax_t kMaxFileBytes = 1 << 20;
+constexpr std::uintmax_t kMaxYamlBytes = 1 << 20;
 
 // `text` in quotes, cut where it would make a message unreadable.
 std::string Quote(const std::string& text) {
@@ -164,7 +164,7 @@ YamlReader::YamlReader(YamlReader&&) noexcept = default;
 YamlReader& YamlReader::operator=(YamlReader&&) noexcept = default;
 
 YamlReader YamlReader::FromFile(const std::string& path) {
-  return FromText(ReadTextFile(path, kMaxFileBytes), path);
+  return FromText(ReadTextFile(path, kMaxYamlBytes), path);
 }
 
 YamlReader YamlReader::FromText(const std::string& bytes, const std::string& name) {

@@ -33,7 +33,7 @@ fci::RobotMode ModeOf(franka::RobotMode mode) {
 }
 
 // Libfranka gives each error a member of its own, and all their names as one text.
-fci::ErrorSet ErrorsOf(const franka::Errors& errors) {
+fci::ErrorSet ErrorsOfFranka(const franka::Errors& errors) {
   fci::ErrorSet result;
   if (!errors) return result;
   const std::string text = static_cast<std::string>(errors);
@@ -45,7 +45,7 @@ fci::ErrorSet ErrorsOf(const franka::Errors& errors) {
 }
 
 // Called each millisecond: the errors, whose text allocates, are read only where there are some.
-RobotSnapshot SnapshotOf(const franka::RobotState& state) {
+RobotSnapshot SnapshotOfFranka(const franka::RobotState& state) {
   RobotSnapshot snapshot;
   snapshot.time_ms = state.time.toMSec();
   snapshot.q = state.q;
@@ -60,8 +60,8 @@ RobotSnapshot SnapshotOf(const franka::RobotState& state) {
   snapshot.F_T_EE = state.F_T_EE;
   snapshot.load_kg = state.m_load;
   snapshot.mode = ModeOf(state.robot_mode);
-  snapshot.errors = ErrorsOf(state.current_errors);
-  snapshot.last_motion_errors = ErrorsOf(state.last_motion_errors);
+  snapshot.errors = ErrorsOfFranka(state.current_errors);
+  snapshot.last_motion_errors = ErrorsOfFranka(state.last_motion_errors);
   snapshot.success_rate = state.control_command_success_rate;
   return snapshot;
 }
@@ -94,8 +94,9 @@ auto Asked(const Ask& ask, const ExchangeLog* log = nullptr) {
   } catch (const franka::RealtimeException& error) {
     throw FciError(Kind::kRefused, error.what());
   } catch (const franka::ControlException& error) {
-    const fci::ErrorSet errors =
-        error.log.empty() ? fci::ErrorSet() : ErrorsOf(error.log.back().state.last_motion_errors);
+    const fci::ErrorSet errors = error.log.empty()
+                                     ? fci::ErrorSet()
+                                     : ErrorsOfFranka(error.log.back().state.last_motion_errors);
     throw FciError(KindOf(error.what()), error.what(), errors, exchanged());
   } catch (const franka::Exception& error) {
     throw FciError(KindOf(error.what()), error.what(), {}, exchanged());
@@ -112,7 +113,7 @@ class LibfrankaDriver final : public FciDriver {
   int server_version() const override { return robot_.serverVersion(); }
 
   RobotSnapshot ReadOnce() override {
-    return Asked([&] { return SnapshotOf(robot_.readOnce()); });
+    return Asked([&] { return SnapshotOfFranka(robot_.readOnce()); });
   }
 
   void Configure(const FciSettings& settings) override {
@@ -168,7 +169,7 @@ class LibfrankaDriver final : public FciDriver {
       const NextCommand& next) {
     return [this, &next](const franka::RobotState& state, franka::Duration elapsed) {
       const Command command =
-          NextAnswer(next, SnapshotOf(state), static_cast<int>(elapsed.toMSec()), log_);
+          NextAnswer(next, SnapshotOfFranka(state), static_cast<int>(elapsed.toMSec()), log_);
       Output output(command.values);
       output.motion_finished = command.finished;
       return output;

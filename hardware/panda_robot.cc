@@ -35,7 +35,7 @@ constexpr double kSpeedShare = 0.97, kAccelerationShare = 0.95, kJerkShare = 0.5
 constexpr robot::fci::Joints kTorques_n_m = {20, 20, 18, 18, 16, 14, 12};
 constexpr robot::fci::Wrench kForces_n = {20, 20, 20, 25, 25, 25};
 
-control::JointVector VectorOf(const robot::fci::Joints& joints) {
+control::JointVector JointVectorOf(const robot::fci::Joints& joints) {
   control::JointVector vector(kJoints);
   std::copy(joints.begin(), joints.end(), vector.begin());
   return vector;
@@ -61,7 +61,7 @@ FciSettings SettingsFor(const robot::RobotModel& robot) {
 }
 
 control::SafetySettings WithTorques(control::SafetySettings safety) {
-  safety.torque_n_m = VectorOf(kTorques_n_m);
+  safety.torque_n_m = JointVectorOf(kTorques_n_m);
   return safety;
 }
 
@@ -80,12 +80,12 @@ std::vector<ControlSample> SamplesOf(const std::vector<ExchangeRecord>& log,
   for (const ExchangeRecord& record : log) {
     ControlSample& sample = samples.emplace_back();
     sample.t = TimeOf(static_cast<std::int64_t>(record.state.time_ms - first_ms));
-    sample.q = VectorOf(record.state.q);
-    sample.v = VectorOf(record.state.dq);
-    sample.q_command = VectorOf(record.command.values);
-    sample.v_command = VectorOf(record.state.dq_d);
-    sample.a_command = VectorOf(record.state.ddq_d);
-    sample.torque = VectorOf(record.state.tau_J);
+    sample.q = JointVectorOf(record.state.q);
+    sample.v = JointVectorOf(record.state.dq);
+    sample.q_command = JointVectorOf(record.command.values);
+    sample.v_command = JointVectorOf(record.state.dq_d);
+    sample.a_command = JointVectorOf(record.state.ddq_d);
+    sample.torque = JointVectorOf(record.state.tau_J);
   }
   return samples;
 }
@@ -103,7 +103,7 @@ PandaRobot::PandaRobot(std::unique_ptr<FciDriver> driver, const robot::RobotMode
       answered_(kLogLength) {
   const RobotSnapshot state = AwaitReady(*driver_, robot);
   driver_->Configure(SettingsFor(robot));
-  latest_ = {EpisodeTime(0), VectorOf(state.q), VectorOf(state.dq)};
+  latest_ = {EpisodeTime(0), JointVectorOf(state.q), JointVectorOf(state.dq)};
 }
 
 PandaRobot::~PandaRobot() {
@@ -170,7 +170,7 @@ void PandaRobot::Run() {
 Command PandaRobot::Answer(const RobotSnapshot& state, int elapsed_ms) {
   if (elapsed_ms == 0) first_ms_ = state.time_ms;
   const auto tick = static_cast<std::int64_t>(state.time_ms - first_ms_);
-  seen_.Append({tick, VectorOf(state.q), VectorOf(state.dq)});
+  seen_.Append({tick, JointVectorOf(state.q), JointVectorOf(state.dq)});
   if (options_.lockstep) {
     // Who does not wait gives up soon after the beginning, not just where a plan takes long.
     if (++num_asked_ == kSilentAt) std::this_thread::sleep_for(kLongerThanARobotWaits);
@@ -187,11 +187,12 @@ Command PandaRobot::Answer(const RobotSnapshot& state, int elapsed_ms) {
 Command PandaRobot::MakeAnswer(const RobotSnapshot& state, int elapsed_ms, std::int64_t tick) {
   control::Measured measured;
   measured.t = TimeOf(tick);
-  measured.q = VectorOf(state.q);
-  measured.v = VectorOf(state.dq);
-  measured.commanded = {VectorOf(state.q_d), VectorOf(state.dq_d), VectorOf(state.ddq_d)};
-  measured.torque = VectorOf(state.tau_J);
-  measured.tau_ext = VectorOf(state.tau_ext);
+  measured.q = JointVectorOf(state.q);
+  measured.v = JointVectorOf(state.dq);
+  measured.commanded = {JointVectorOf(state.q_d), JointVectorOf(state.dq_d),
+                        JointVectorOf(state.ddq_d)};
+  measured.torque = JointVectorOf(state.tau_J);
+  measured.tau_ext = JointVectorOf(state.tau_ext);
   // A motion begins without a history.
   measured.success_rate = tick < 100 ? 1 : state.success_rate;
   measured.lost_in_a_row = std::max(0, elapsed_ms - 1);

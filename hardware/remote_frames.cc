@@ -10,14 +10,14 @@ namespace {
 
 namespace fci = robot::fci;
 
-constexpr std::chrono::seconds kConnectTime(10);
+constexpr std::chrono::seconds kFrameConnectTime(10);
 // A picture is drawn meanwhile, perhaps on a machine that has much else to do; time stands still.
-constexpr std::chrono::seconds kReplyTime(600);
+constexpr std::chrono::seconds kFrameReplyTime(600);
 
 }  // namespace
 
 RemoteFrames::RemoteFrames(const std::string& address)
-    : stream_(fci::ByteStream::Connect(address, fci::kFramePort, kConnectTime)),
+    : stream_(fci::ByteStream::Connect(address, fci::kFramePort, kFrameConnectTime)),
       next_due_(Ask(fci::FrameQuestion::kWhen).next_due) {}
 
 std::optional<robot::Frame> RemoteFrames::Read(EpisodeTime) {
@@ -32,7 +32,7 @@ std::optional<robot::Frame> RemoteFrames::Read(EpisodeTime) {
 
 fci::FrameReply RemoteFrames::Ask(fci::FrameQuestion question) {
   stream_.Send({static_cast<std::uint8_t>(question)});
-  const auto until = std::chrono::steady_clock::now() + kReplyTime;
+  const auto until = std::chrono::steady_clock::now() + kFrameReplyTime;
   for (;;) {
     if (auto reply = fci::TakeFrameReply(&received_)) return std::move(*reply);
     if (stream_.Receive(&received_)) continue;

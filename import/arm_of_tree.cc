@@ -14,7 +14,6 @@
 namespace sidestep::imports {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kDensity_kg_m3 = 1000;  // of what is given a weight that it lacks
 constexpr double kJerkRamp = 0.1;        // of the ramp of speed, in which acceleration comes
 
@@ -139,7 +138,8 @@ class Maker {
     limits.q_max = from.q_max;
     limits.v_max = from.v_max;
     limits.torque_max = from.torque_max;
-    limits.a_max = limits.jerk_max = limits.torque_rate_max = kInfinity;
+    limits.a_max = limits.jerk_max = limits.torque_rate_max =
+        std::numeric_limits<double>::infinity();
     if (!(limits.q_min < limits.q_max)) {
       Fail(from.line, key,
            "lower must be < upper, they are " + ShortestText(limits.q_min) + " and " +

@@ -12,7 +12,7 @@
 namespace sidestep::imports {
 namespace {
 
-std::string PlaceText(const Eigen::Vector3d& p) {
+std::string PointText(const Eigen::Vector3d& p) {
   return "(" + ShortestText(p.x()) + ", " + ShortestText(p.y()) + ", " + ShortestText(p.z()) + ")";
 }
 
@@ -69,8 +69,8 @@ void CheckClosed(const NamedMesh& solid) {
     if (sum == 0) continue;
     throw InputError(solid.name,
                      "is not closed: the edge from " +
-                         PlaceText(mesh.vertices.col(edges[begin][0])) + " to " +
-                         PlaceText(mesh.vertices.col(edges[begin][1])) + " has " +
+                         PointText(mesh.vertices.col(edges[begin][0])) + " to " +
+                         PointText(mesh.vertices.col(edges[begin][1])) + " has " +
                          (end - begin == 1 ? "a triangle on one side only"
                                            : "triangles that do not face the same way"));
   }

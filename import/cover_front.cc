@@ -17,7 +17,6 @@
 namespace sidestep::imports {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSurfacePoints = 3000;  // about
 constexpr double kCoarser = 1.6;         // are those for the first choice
 constexpr int kCellsAlong = 48;
@@ -38,7 +37,8 @@ class Search {
       : task_(task),
         apart_m_(std::sqrt(Area_m2(task.meshes) / kSurfacePoints)),
         points_(SurfacePoints(task.meshes, apart_m_)),
-        best_(static_cast<std::size_t>(task.most_spheres) + 1, {{}, kInfinity}) {}
+        best_(static_cast<std::size_t>(task.most_spheres) + 1,
+              {{}, std::numeric_limits<double>::infinity()}) {}
 
   CoverFront Run() {
     Begin();
@@ -48,7 +48,7 @@ class Search {
     for (int count = 1; count < few; ++count) SplitOne(Best(count).spheres);
     for (int count = few; count > 1; --count) TakeOneAway(Best(count).spheres);
     CoverFront front;
-    double least = kInfinity;  // before it is finished
+    double least = std::numeric_limits<double>::infinity();  // before it is finished
     for (int count = 1; count <= task_.most_spheres; ++count) {
       if (!(Best(count).volume_m3 < kWorthwhile * least)) continue;
       least = Best(count).volume_m3;

@@ -103,7 +103,7 @@ double SphereTravel(const robot::RobotModel& robot, const VectorXd& q_from, cons
 }
 
 // Numbers that a person reads.
-VectorXd Rounded(const VectorXd& q) { return (1e3 * q).array().round() / 1e3; }
+VectorXd RoundedJoints(const VectorXd& q) { return (1e3 * q).array().round() / 1e3; }
 
 }  // namespace
 
@@ -163,7 +163,7 @@ bool ChooseGoal(scenarios::Scenario& scenario, const robot::RobotModel& robot, R
   for (int n = 0; n < kMostTries && num_found < kEnoughGoals; ++n) {
     const VectorXd any = RandomConfiguration(robot, random);
     const VectorXd q =
-        Rounded(scenario.q_start + random.Uniform(0.2, 0.7) * (any - scenario.q_start));
+        RoundedJoints(scenario.q_start + random.Uniform(0.2, 0.7) * (any - scenario.q_start));
     const double off_m = std::abs(SphereTravel(robot, scenario.q_start, q) - wanted_m);
     if (off_m >= best || WayClearance(space, scenario.q_start, q) < clearance_m) continue;
     if (!is_good(q)) continue;
@@ -191,7 +191,7 @@ bool ChooseTask(scenarios::Scenario& scenario, const robot::RobotModel& robot, R
   }
   scenario.start_name.clear();
   for (int n = 0; n < kMostTries; ++n) {
-    const VectorXd q = Rounded(RandomConfiguration(robot, random));
+    const VectorXd q = RoundedJoints(RandomConfiguration(robot, random));
     if (space.Clearance(q) < clearance_m || !is_good(q)) continue;
     scenario.q_start = q;
     if (ChooseGoal(scenario, robot, random, is_good)) return true;

@@ -8,7 +8,7 @@
 namespace sidestep::imports {
 namespace {
 
-StaticSolids SolidsOf(const scenarios::Scenario& scenario, bool with_mount) {
+StaticSolids StaticSolidsOf(const scenarios::Scenario& scenario, bool with_mount) {
   StaticSolids solids;
   for (const scenarios::StaticObstacle& fixed : scenario.static_obstacles) {
     if (!with_mount && fixed.name == scenario.mount) continue;
@@ -53,8 +53,8 @@ Links LinksKeptApart(const robot::RobotModel& robot) {
 
 FreeSpace::FreeSpace(const scenarios::Scenario& scenario, const robot::RobotModel& robot)
     : robot_(robot),
-      all_(SolidsOf(scenario, true)),
-      but_for_the_mount_(SolidsOf(scenario, false)),
+      all_(StaticSolidsOf(scenario, true)),
+      but_for_the_mount_(StaticSolidsOf(scenario, false)),
       is_of_mount_(static_cast<std::size_t>(robot.num_spheres()), 0) {
   for (const int sphere : robot.mount_spheres()) is_of_mount_[static_cast<std::size_t>(sphere)] = 1;
   const Links links = LinksKeptApart(robot);

@@ -10,9 +10,10 @@
 namespace sidestep::imports {
 namespace {
 
-class Choice {
+class JointChooser {
  public:
-  Choice(const robot::RobotTree& tree, const ArmChoices& choices) : tree_(tree), choices_(choices) {
+  JointChooser(const robot::RobotTree& tree, const ArmChoices& choices)
+      : tree_(tree), choices_(choices) {
     for (const robot::TreeJoint& joint : tree.joints) {
       children_[joint.parent].push_back(joint.name);
     }
@@ -219,7 +220,7 @@ class Choice {
 }  // namespace
 
 JointChoice ChooseJoints(const robot::RobotTree& tree, const ArmChoices& choices) {
-  return Choice(tree, choices).Run();
+  return JointChooser(tree, choices).Run();
 }
 
 }  // namespace sidestep::imports

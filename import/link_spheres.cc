@@ -8,7 +8,7 @@
 namespace sidestep::imports {
 namespace {
 
-LinkSolids SolidsOf(const robot::ArmLink& link) {
+LinkSolids LinkSolidsOf(const robot::ArmLink& link) {
   LinkSolids solids;
   for (const robot::LinkSolid& solid : link.solids) {
     if (const auto* const shape = std::get_if<Shape>(&solid.form)) {
@@ -28,7 +28,7 @@ LinkSolids SolidsOf(const robot::ArmLink& link) {
 std::vector<robot::CollisionSphere> CoverArm(const robot::ArmDescription& arm,
                                              const SphereRequest& request) {
   std::vector<LinkSolids> links;
-  for (const robot::ArmLink& link : arm.links) links.push_back(SolidsOf(link));
+  for (const robot::ArmLink& link : arm.links) links.push_back(LinkSolidsOf(link));
   CoverRequest covers;
   covers.cover_m = request.cover_m;
   covers.num_spheres = request.num_spheres;

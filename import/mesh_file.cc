@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kMaxBytes = 256u << 20;
+constexpr std::uintmax_t kMaxMeshBytes = 256u << 20;
 
 std::string EndingOf(const std::string& path) {
   std::string ending = fs::path(path).extension().string();
@@ -41,9 +41,9 @@ void CheckFile(const std::string& path, const std::string& ending) {
   if (!fs::is_regular_file(path, error)) throw InputError(path, "is no file");
   const std::uintmax_t size = fs::file_size(path, error);
   if (error) throw InputError(path, error.message());
-  if (size > kMaxBytes) {
+  if (size > kMaxMeshBytes) {
     throw InputError(path, "is " + std::to_string(size) + " bytes long, must be at most " +
-                               std::to_string(kMaxBytes));
+                               std::to_string(kMaxMeshBytes));
   }
   if (ending != ".stl" && ending != ".obj" && ending != ".dae") {
     throw InputError(path, "must be an STL, OBJ or DAE file");
@@ -88,7 +88,7 @@ void Collect(const aiScene& scene, const aiNode& node, const Eigen::Affine3d& X_
 }
 
 // Vertices at one place are one vertex; a place is a millionth of the mesh wide, for files round.
-TriangleMesh Joined(const Soup& soup) {
+TriangleMesh JoinedSoup(const Soup& soup) {
   using Place = Eigen::Matrix<std::int64_t, 3, 1>;
   struct Hash {
     std::size_t operator()(const Place& place) const {
@@ -146,7 +146,7 @@ std::size_t CountOpenEdges(const TriangleMesh& mesh) {
 
 // As the file says, "Z_UP" most often.
 std::string UpAxisOf(const std::string& path) {
-  const std::string text = ReadTextFile(path, kMaxBytes);
+  const std::string text = ReadTextFile(path, kMaxMeshBytes);
   tinyxml2::XMLDocument document;
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
     throw XmlFault(path, document.ErrorLineNum(), document.ErrorName());
@@ -203,7 +203,7 @@ LoadedMesh Import(const std::string& path, const std::string& ending, const Mesh
   for (const Eigen::Vector3d& vertex : soup.vertices) {
     if (!vertex.allFinite()) throw InputError(path, "has a vertex that is not finite");
   }
-  loaded.mesh = Joined(soup);
+  loaded.mesh = JoinedSoup(soup);
   const std::size_t open = CountOpenEdges(loaded.mesh);
   if (open > 0) {
     loaded.notes.push_back("is not closed: " + std::to_string(open) +

@@ -13,9 +13,7 @@
 namespace sidestep::imports {
 namespace {
 
-std::string Number(double value) { return ShortestText(value + 0.0); }  // no -0
-
-std::string Numbers(const Eigen::VectorXd& values) { return Joined(values, " ", &Number); }
+std::string Numbers(const Eigen::VectorXd& values) { return Joined(values, " ", &ShortestNumber); }
 
 // In a comment two dashes are not allowed.
 std::string InComment(std::string text) {
@@ -41,7 +39,7 @@ std::string MeshName(const robot::ArmLink& link, std::size_t solid) {
 
 struct SizeText {
   std::string operator()(const Box& box) const { return Numbers(box.size_m / 2); }
-  std::string operator()(const Sphere& sphere) const { return Number(sphere.radius_m); }
+  std::string operator()(const Sphere& sphere) const { return ShortestNumber(sphere.radius_m); }
   std::string operator()(const Capsule& capsule) const {
     return Numbers(Eigen::Vector2d(capsule.radius_m, capsule.length_m / 2));
   }
@@ -67,9 +65,9 @@ std::optional<Eigen::Matrix3Xd> CornersOf(const robot::LinkSolid& solid) {
   return corners;
 }
 
-class Writer {
+class MjcfWriter {
  public:
-  explicit Writer(const robot::ArmDescription& arm) : arm_(arm) {}
+  explicit MjcfWriter(const robot::ArmDescription& arm) : arm_(arm) {}
 
   std::string Write(const LinkPairs& without_contact) {
     text_ = "<!-- " + InComment(arm_.name) + ", made of " + InComment(arm_.source) +
@@ -123,7 +121,7 @@ class Writer {
       const Eigen::Matrix3d& I = link.inertia->I_C;
       Eigen::Matrix<double, 6, 1> parts;
       parts << I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2);
-      Line(depth + 1, "<inertial mass=\"" + Number(link.inertia->mass_kg) + "\" pos=\"" +
+      Line(depth + 1, "<inertial mass=\"" + ShortestNumber(link.inertia->mass_kg) + "\" pos=\"" +
                           Numbers(link.inertia->p_LC) + "\" fullinertia=\"" + Numbers(parts) +
                           "\"/>");
     }
@@ -144,14 +142,15 @@ class Writer {
     if (!IsMimic(i)) {
       const robot::JointLimits& limits = arm_.limits[static_cast<std::size_t>(joint.coordinate)];
       if (std::isfinite(limits.q_min) && std::isfinite(limits.q_max)) {
-        line +=
-            " limited=\"true\" range=\"" + Number(limits.q_min) + " " + Number(limits.q_max) + "\"";
+        line += " limited=\"true\" range=\"" + ShortestNumber(limits.q_min) + " " +
+                ShortestNumber(limits.q_max) + "\"";
       }
     }
     const robot::JointDynamics& dynamics = arm_.dynamics[i];
-    if (dynamics.damping > 0) line += " damping=\"" + Number(dynamics.damping) + "\"";
-    if (dynamics.friction > 0) line += " frictionloss=\"" + Number(dynamics.friction) + "\"";
-    if (dynamics.armature > 0) line += " armature=\"" + Number(dynamics.armature) + "\"";
+    if (dynamics.damping > 0) line += " damping=\"" + ShortestNumber(dynamics.damping) + "\"";
+    if (dynamics.friction > 0)
+      line += " frictionloss=\"" + ShortestNumber(dynamics.friction) + "\"";
+    if (dynamics.armature > 0) line += " armature=\"" + ShortestNumber(dynamics.armature) + "\"";
     Line(depth, line + "/>");
   }
 
@@ -196,7 +195,7 @@ class Writer {
       const robot::Joint& joint = arm_.joints[i];
       Line(2, "<joint joint1=\"" + EscapeMarkup(joint.name) + "\" joint2=\"" +
                   EscapeMarkup(arm_.joints[LeaderOf(i)].name) + "\" polycoef=\"" +
-                  Number(joint.offset) + " " + Number(joint.multiplier) +
+                  ShortestNumber(joint.offset) + " " + ShortestNumber(joint.multiplier) +
                   " 0 0 0\" solref=\"0.005 1\"/>");
     }
     if (!is_first) Line(1, "</equality>");
@@ -211,7 +210,8 @@ class Writer {
                          EscapeMarkup(joint.name) + "\"";
       const double most = arm_.limits[static_cast<std::size_t>(joint.coordinate)].torque_max;
       if (std::isfinite(most)) {
-        line += " ctrllimited=\"true\" ctrlrange=\"" + Number(-most) + " " + Number(most) + "\"";
+        line += " ctrllimited=\"true\" ctrlrange=\"" + ShortestNumber(-most) + " " +
+                ShortestNumber(most) + "\"";
       }
       Line(2, line + "/>");
     }
@@ -274,7 +274,7 @@ LinkPairs PairsWithoutContact(const robot::ArmDescription& arm, const LinkPairs&
 }
 
 std::string MjcfText(const robot::ArmDescription& arm, const LinkPairs& without_contact) {
-  return Writer(arm).Write(without_contact);
+  return MjcfWriter(arm).Write(without_contact);
 }
 
 }  // namespace sidestep::imports

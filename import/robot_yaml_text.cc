@@ -13,19 +13,18 @@ namespace {
 
 using scenarios::Quoted;
 
-std::string Number(double value) { return ShortestText(value + 0.0); }  // no -0
 std::string List(const Eigen::VectorXd& values) {
-  return "[" + Joined(values, ", ", &Number) + "]";
+  return "[" + Joined(values, ", ", &ShortestNumber) + "]";
 }
 
 // A coordinate to a tenth of a micrometre.
-Eigen::VectorXd Rounded(const Eigen::VectorXd& values) {
+Eigen::VectorXd RoundedCoordinates(const Eigen::VectorXd& values) {
   return (values * 1e7).array().round().matrix() / 1e7;
 }
 
-class Writer {
+class RobotYamlWriter {
  public:
-  Writer(const robot::ArmDescription& arm, const RobotDetails& details)
+  RobotYamlWriter(const robot::ArmDescription& arm, const RobotDetails& details)
       : arm_(arm), details_(details) {}
 
   std::string Write() {
@@ -78,9 +77,9 @@ class Writer {
                                  arm_.joints.begin());
     if (leader != i) {
       Line("    mimic: {joint: " + Quoted(arm_.joints[leader].name) +
-           ", multiplier: " + Number(joint.multiplier) +
+           ", multiplier: " + ShortestNumber(joint.multiplier) +
            (joint.kind == robot::JointKind::kPrismatic ? ", offset_m: " : ", offset_rad: ") +
-           Number(joint.offset) + "}");
+           ShortestNumber(joint.offset) + "}");
       return;
     }
     WriteLimits(arm_.limits[static_cast<std::size_t>(joint.coordinate)],
@@ -91,7 +90,7 @@ class Writer {
     std::string line;
     const auto add = [&line](const char* key, double value) {
       if (!std::isfinite(value)) return;
-      line += (line.empty() ? "" : ", ") + std::string(key) + ": " + Number(value);
+      line += (line.empty() ? "" : ", ") + std::string(key) + ": " + ShortestNumber(value);
     };
     add(keys.q_min, limits.q_min);
     add(keys.q_max, limits.q_max);
@@ -107,8 +106,9 @@ class Writer {
     Line("# They hold all that can touch.");
     Line("spheres:");
     for (const robot::CollisionSphere& sphere : details_.spheres) {
-      Line("  - {link: " + LinkName(sphere.link) + ", center_m: " + List(Rounded(sphere.p_LS)) +
-           ", radius_m: " + Number(std::ceil(sphere.radius_m * 1e5) / 1e5) + "}");
+      Line("  - {link: " + LinkName(sphere.link) +
+           ", center_m: " + List(RoundedCoordinates(sphere.p_LS)) +
+           ", radius_m: " + ShortestNumber(std::ceil(sphere.radius_m * 1e5) / 1e5) + "}");
     }
   }
 
@@ -130,9 +130,10 @@ class Writer {
     Line("# One around all of a link that can touch.");
     Line("capsules:");
     for (const robot::CollisionCapsule& capsule : details_.capsules) {
-      Line("  - {link: " + LinkName(capsule.link) + ", from_m: " + List(Rounded(capsule.p_LA)) +
-           ", to_m: " + List(Rounded(capsule.p_LB)) +
-           ", radius_m: " + Number(std::ceil(capsule.radius_m * 1e5) / 1e5) + "}");
+      Line("  - {link: " + LinkName(capsule.link) +
+           ", from_m: " + List(RoundedCoordinates(capsule.p_LA)) +
+           ", to_m: " + List(RoundedCoordinates(capsule.p_LB)) +
+           ", radius_m: " + ShortestNumber(std::ceil(capsule.radius_m * 1e5) / 1e5) + "}");
     }
   }
 
@@ -146,7 +147,7 @@ class Writer {
   }
 
   void WriteControl() {
-    Line("# To start from: critically damped at " + Number(details_.bandwidth_rad_s) +
+    Line("# To start from: critically damped at " + ShortestNumber(details_.bandwidth_rad_s) +
          " rad/s by the greatest inertia that each joint was");
     Line(
         "# seen to move alone, with the armature of the MJCF (an assumption, for nothing is known "
@@ -165,7 +166,7 @@ class Writer {
 }  // namespace
 
 std::string RobotYamlText(const robot::ArmDescription& arm, const RobotDetails& details) {
-  return Writer(arm, details).Write();
+  return RobotYamlWriter(arm, details).Write();
 }
 
 }  // namespace sidestep::imports

@@ -19,10 +19,10 @@ namespace {
 
 constexpr double kLargest_m = 10;  // of a link's solid
 
-class Reader {
+class SolidReader {
  public:
-  Reader(const UrdfFile& file, const urdf::Link& link, const ArmChoices& choices,
-         std::vector<std::string>* notes)
+  SolidReader(const UrdfFile& file, const urdf::Link& link, const ArmChoices& choices,
+              std::vector<std::string>* notes)
       : file_(file), link_(link), choices_(choices), notes_(*notes) {}
 
   robot::LinkSolid Read(const urdf::Geometry& geometry, const urdf::Pose& origin, int line) {
@@ -114,7 +114,7 @@ class Reader {
 std::vector<robot::LinkSolid> ReadSolids(const UrdfFile& file, const urdf::Link& link,
                                          const ArmChoices& choices,
                                          std::vector<std::string>* notes) {
-  Reader reader(file, link, choices, notes);
+  SolidReader reader(file, link, choices, notes);
   std::vector<robot::LinkSolid> solids;
   const auto line = [&](const char* kind, std::size_t i) {
     return file.LineOf(std::string(kind) + " " + link.name + " " + std::to_string(i));

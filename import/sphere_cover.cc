@@ -46,9 +46,9 @@ double Extent(const std::vector<TriangleMesh>& meshes) {
 double StepsPerMetre(double cover_m) { return std::pow(10, 2 - std::floor(std::log10(cover_m))); }
 
 // The covers of all links within one tolerance, and how to choose one of each.
-class Choice {
+class CoverChoice {
  public:
-  Choice(const std::vector<LinkSolids>& links, double cover_m, int most_spheres)
+  CoverChoice(const std::vector<LinkSolids>& links, double cover_m, int most_spheres)
       : cover_m_(cover_m) {
     for (const LinkSolids& link : links) {
       if (link.shapes.empty() && link.meshes.empty()) {
@@ -122,7 +122,7 @@ class Choice {
   std::vector<std::vector<std::size_t>> chosen_;  // of each link, by the number of it and before it
 };
 
-void Check(const std::vector<LinkSolids>& links, const CoverRequest& request) {
+void CheckRequest(const std::vector<LinkSolids>& links, const CoverRequest& request) {
   const auto is_good = [](double value) { return std::isfinite(value) && value >= 0; };
   if (!is_good(request.cover_m) || !is_good(request.max_excess) || request.num_spheres < 0) {
     throw std::invalid_argument("CoverLinks: a number that is negative or not finite");
@@ -140,20 +140,20 @@ void Check(const std::vector<LinkSolids>& links, const CoverRequest& request) {
 }
 
 // The smallest tolerance, to a few percent, within which so many spheres are enough.
-Choice NearestWith(const std::vector<LinkSolids>& links, int num_spheres, double most_m3,
-                   double largest_m) {
+CoverChoice NearestWith(const std::vector<LinkSolids>& links, int num_spheres, double most_m3,
+                        double largest_m) {
   constexpr double kFirst = 0.02;  // of the largest link
   constexpr int kHalvings = 4, kMostDoublings = 20;
-  const auto is_enough = [&](const Choice& choice) {
+  const auto is_enough = [&](const CoverChoice& choice) {
     const int fewest = choice.Fewest(most_m3);
     return fewest >= 0 && fewest <= num_spheres;
   };
   double low = kFirst * largest_m, high = low;
-  Choice best(links, high, num_spheres);
+  CoverChoice best(links, high, num_spheres);
   if (is_enough(best)) {
     for (int i = 0; i < kMostDoublings; ++i) {
       low = high / 2;
-      Choice finer(links, low, num_spheres);
+      CoverChoice finer(links, low, num_spheres);
       if (!is_enough(finer)) break;
       best = std::move(finer);
       high = low;
@@ -162,12 +162,12 @@ Choice NearestWith(const std::vector<LinkSolids>& links, int num_spheres, double
     for (int i = 0; i < kMostDoublings && !is_enough(best); ++i) {
       low = high;
       high *= 2;
-      best = Choice(links, high, num_spheres);
+      best = CoverChoice(links, high, num_spheres);
     }
   }
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = std::sqrt(low * high);
-    Choice finer(links, middle, num_spheres);
+    CoverChoice finer(links, middle, num_spheres);
     (is_enough(finer) ? high : low) = middle;
     if (high == middle) best = std::move(finer);
   }
@@ -192,7 +192,7 @@ double RobotCover::excess() const {
 }
 
 RobotCover CoverLinks(const std::vector<LinkSolids>& links, const CoverRequest& request) {
-  Check(links, request);
+  CheckRequest(links, request);
   std::vector<double> solid_m3;
   double all_m3 = 0, largest_m = 0;
   for (const LinkSolids& link : links) {
@@ -207,9 +207,9 @@ RobotCover CoverLinks(const std::vector<LinkSolids>& links, const CoverRequest& 
   if (all_m3 == 0) return {request.cover_m, std::vector<LinkCover>(links.size())};
   const double most_m3 = (1 + request.max_excess) * all_m3;
   const int most = request.num_spheres > 0 ? request.num_spheres : kMostSpheresOfALink;
-  const Choice choice = request.cover_m > 0
-                            ? Choice(links, request.cover_m, most)
-                            : NearestWith(links, request.num_spheres, most_m3, largest_m);
+  const CoverChoice choice = request.cover_m > 0
+                                 ? CoverChoice(links, request.cover_m, most)
+                                 : NearestWith(links, request.num_spheres, most_m3, largest_m);
   int count = choice.Fewest(most_m3);
   if (request.num_spheres > 0) {
     count = choice.LeastVoluminous(request.num_spheres);

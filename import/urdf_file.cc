@@ -21,16 +21,16 @@ namespace {
 
 using tinyxml2::XMLElement;
 
-constexpr std::uintmax_t kMaxBytes = 64u << 20;
+constexpr std::uintmax_t kMaxUrdfBytes = 64u << 20;
 constexpr int kMaxElements = 200000;
 
 // The numbers of an element: how many an attribute holds, and what they must be.
-struct Numbers {
+struct NumberRule {
   std::string_view tag, attribute;
   int count;
   bool is_required, must_be_positive;
 };
-constexpr Numbers kNumbers[] = {
+constexpr NumberRule kNumbers[] = {
     {"origin", "xyz", 3, false, false},        {"origin", "rpy", 3, false, false},
     {"mass", "value", 1, true, false},         {"inertia", "ixx", 1, true, false},
     {"inertia", "ixy", 1, true, false},        {"inertia", "ixz", 1, true, false},
@@ -53,9 +53,9 @@ bool IsXacro(std::string_view text) {
          text.find("$(") != std::string_view::npos;
 }
 
-class Check {
+class UrdfCheck {
  public:
-  explicit Check(UrdfFile* file) : file_(*file) {}
+  explicit UrdfCheck(UrdfFile* file) : file_(*file) {}
 
   void Run(const tinyxml2::XMLDocument& document) {
     CheckNodes(document, 0);
@@ -133,7 +133,7 @@ class Check {
   }
 
   void CheckNumbers(const XMLElement& element, const std::string& of) const {
-    for (const Numbers& numbers : kNumbers) {
+    for (const NumberRule& numbers : kNumbers) {
       if (numbers.tag != element.Name()) continue;
       const std::string key =
           of + ": " + std::string(numbers.tag) + " " + std::string(numbers.attribute);
@@ -326,7 +326,7 @@ int UrdfFile::LineOf(const std::string& what) const {
 }
 
 UrdfFile ReadUrdf(const std::string& path) {
-  return ParseUrdf(ReadTextFile(path, kMaxBytes), path);
+  return ParseUrdf(ReadTextFile(path, kMaxUrdfBytes), path);
 }
 
 UrdfFile ParseUrdf(const std::string& text, const std::string& path) {
@@ -336,7 +336,7 @@ UrdfFile ParseUrdf(const std::string& text, const std::string& path) {
   }
   UrdfFile file;
   file.path = path;
-  Check(&file).Run(document);
+  UrdfCheck(&file).Run(document);
   const UrdfdomMessages messages;
   file.model = urdf::parseURDF(text);
   if (file.model == nullptr || file.model->getRoot() == nullptr) {

@@ -12,9 +12,9 @@
 namespace sidestep::imports {
 namespace {
 
-class Reader {
+class TreeReader {
  public:
-  Reader(const UrdfFile& file, const ArmChoices& choices) : file_(file), choices_(choices) {}
+  TreeReader(const UrdfFile& file, const ArmChoices& choices) : file_(file), choices_(choices) {}
 
   robot::RobotTree Read() {
     tree_.file = file_.path;
@@ -128,7 +128,7 @@ class Reader {
 
 robot::RobotTree ReadUrdfTree(const std::string& path, const ArmChoices& choices) {
   const UrdfFile file = ReadUrdf(path);
-  return Reader(file, choices).Read();
+  return TreeReader(file, choices).Read();
 }
 
 }  // namespace sidestep::imports

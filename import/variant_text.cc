@@ -30,9 +30,8 @@ std::string VariantText(const Variant& variant) {
   for (const Variant::LinkSpheres& link : variant.links) {
     for (const CoverSphere& sphere : link.spheres) {
       const Eigen::Vector3d& p = sphere.center_m;
-      // 0.0 makes a zero of -0.
-      text += "  - {link: " + Word(link.link) + ", center_m: [" + ShortestText(p.x() + 0.0) + ", " +
-              ShortestText(p.y() + 0.0) + ", " + ShortestText(p.z() + 0.0) +
+      text += "  - {link: " + Word(link.link) + ", center_m: [" + ShortestNumber(p.x()) + ", " +
+              ShortestNumber(p.y()) + ", " + ShortestNumber(p.z()) +
               "], radius_m: " + ShortestText(sphere.radius_m) + "}\n";
       if (link.is_mount) mount.push_back(std::to_string(number));
       ++number;

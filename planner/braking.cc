@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kAccelerationShare = 0.9;
 constexpr double kQuickest_s = 0.01;
-constexpr double kSameTime_s = 1e-6;  // nearer states are one, the earlier
+constexpr double kSameState_s = 1e-6;  // nearer states are one, the earlier
 // States of the grid this near to the end of a stop are left out: between two that are close, an
 // acceleration is a small difference over a smaller one.
 constexpr double kNeighbour_s = 1e-3;
@@ -23,7 +23,7 @@ struct Bounds {
   double most = std::numeric_limits<double>::infinity();  // within the position limits
 };
 
-Bounds BoundsOf(const robot::JointLimits& limits, double q, double v) {
+Bounds StopBoundsOf(const robot::JointLimits& limits, double q, double v) {
   Bounds bounds;
   if (v == 0) return bounds;
   const double quickest_s = std::abs(v) / limits.a_max;
@@ -41,7 +41,7 @@ Eigen::VectorXd ChooseTimes(const std::vector<robot::JointLimits>& limits,
   Eigen::VectorXd own(n);
   Bounds all;
   for (Eigen::Index j = 0; j < n; ++j) {
-    const Bounds bounds = BoundsOf(limits[static_cast<std::size_t>(j)], from.q(j), from.v(j));
+    const Bounds bounds = StopBoundsOf(limits[static_cast<std::size_t>(j)], from.q(j), from.v(j));
     own(j) = std::max(bounds.least, std::min(bounds.gentle, bounds.most));
     all.least = std::max(all.least, bounds.least);
     all.gentle = std::max(all.gentle, bounds.gentle);
@@ -60,7 +60,7 @@ std::vector<double> SupportTimes(const Eigen::VectorXd& stop_s, double step_s, i
     if (!has_neighbour || k + 1 == num_states) times.push_back(t_s);
   }
   std::sort(times.begin(), times.end());
-  const auto same = [](double a, double b) { return b - a < kSameTime_s; };
+  const auto same = [](double a, double b) { return b - a < kSameState_s; };
   times.erase(std::unique(times.begin(), times.end(), same), times.end());
   return times;
 }

@@ -12,7 +12,7 @@
 namespace sidestep::planner {
 namespace {
 
-constexpr double kSameTime_s = 0.02;  // contacts this close are at one time
+constexpr double kSameContact_s = 0.02;  // contacts this close are at one time
 
 // What the fast look at a moment may be off by, as long as joints turn less than this: far more
 // than rounding, far less than matters.
@@ -103,7 +103,7 @@ bool IsSafer(const Clearance& a, const Clearance& b) {
   if (a.first_contact.has_value() != b.first_contact.has_value()) return !a.first_contact;
   if (a.first_contact) {
     const double later_s = (*a.first_contact - *b.first_contact).seconds();
-    if (std::abs(later_s) > kSameTime_s) return later_s > 0;
+    if (std::abs(later_s) > kSameContact_s) return later_s > 0;
   }
   return a.least_m > b.least_m;
 }

@@ -58,7 +58,7 @@ Trajectory FixedPart(const PlanRequest& request) {
 // The request's fixed states, then the motion that `make_free_part` gives from the last of them,
 // (q, v), in a given time.
 template <class MakeFreePartFn>
-Trajectory Complete(const PlanRequest& request, const MakeFreePartFn& make_free_part) {
+Trajectory WithFreePart(const PlanRequest& request, const MakeFreePartFn& make_free_part) {
   const int K = request.num_states, last_fixed = request.num_fixed - 1;
   Trajectory motion = FixedPart(request);
   const Trajectory free_part = make_free_part(motion.q.col(last_fixed), motion.v.col(last_fixed),
@@ -75,7 +75,7 @@ Trajectory Complete(const PlanRequest& request, const MakeFreePartFn& make_free_
 }  // namespace
 
 Trajectory MakeDirectMotion(const PlanRequest& request, Timing timing) {
-  return Complete(request, [&](const auto& q, const auto& v, double duration_s) {
+  return WithFreePart(request, [&](const auto& q, const auto& v, double duration_s) {
     return MakeFreePart(q, v, request.q_goal, duration_s, timing);
   });
 }
@@ -83,7 +83,7 @@ Trajectory MakeDirectMotion(const PlanRequest& request, Timing timing) {
 Trajectory MakeDetour(const PlanRequest& request, const Eigen::VectorXd& scale,
                       RandomStream& random) {
   const auto share = [&random] { return kLeastShare + (1 - 2 * kLeastShare) * random.Uniform(); };
-  return Complete(request, [&](const auto& q, const auto& v, double duration_s) {
+  return WithFreePart(request, [&](const auto& q, const auto& v, double duration_s) {
     const Eigen::VectorXd way = request.q_goal - q, rest = Eigen::VectorXd::Zero(q.size());
     const double via_s = share() * duration_s;
     Eigen::VectorXd q_via = q + share() * way;

@@ -9,20 +9,20 @@
 namespace sidestep::planner {
 namespace {
 
-void Require(bool condition, const std::string& what) {
+void RequireOfGaussNewton(bool condition, const std::string& what) {
   if (!condition) throw std::invalid_argument("GaussNewton: " + what);
 }
 
 void Check(const robot::RobotModel& robot, const Trajectory& initial,
            const GaussNewtonOptions& options) {
   CheckTrajectory(initial);
-  Require(initial.num_joints() == robot.num_joints(),
-          "the trajectory must have the robot's joints");
-  Require(initial.num_states() >= 2, "needs at least 2 states");
-  Require(options.epsilon_m >= 0 && options.sigma_obs > 0 && options.qc > 0,
-          "epsilon must be >= 0, sigma and qc > 0");
-  Require(options.num_interpolated >= 0 && options.max_iterations >= 0,
-          "num_interpolated and max_iterations must be >= 0");
+  RequireOfGaussNewton(initial.num_joints() == robot.num_joints(),
+                       "the trajectory must have the robot's joints");
+  RequireOfGaussNewton(initial.num_states() >= 2, "needs at least 2 states");
+  RequireOfGaussNewton(options.epsilon_m >= 0 && options.sigma_obs > 0 && options.qc > 0,
+                       "epsilon must be >= 0, sigma and qc > 0");
+  RequireOfGaussNewton(options.num_interpolated >= 0 && options.max_iterations >= 0,
+                       "num_interpolated and max_iterations must be >= 0");
 }
 
 }  // namespace
@@ -68,8 +68,8 @@ void GaussNewton::SetField(int k, const sdf::DistanceField& field, EpisodeTime s
 
 void GaussNewton::AddPrior(int k, const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                            double sigma) {
-  Require(k >= 0 && k < K_ && q.size() == n_ && v.size() == n_ && sigma > 0,
-          "a prior needs a state, n positions, n velocities and a sigma > 0");
+  RequireOfGaussNewton(k >= 0 && k < K_ && q.size() == n_ && v.size() == n_ && sigma > 0,
+                       "a prior needs a state, n positions, n velocities and a sigma > 0");
   Eigen::VectorXd x(2 * n_);
   x << q, v;
   priors_.push_back({k, x, sigma});

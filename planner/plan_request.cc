@@ -11,14 +11,14 @@ namespace {
 // Support states stand where they should to within this share of a step.
 constexpr double kGridTolerance = 1e-6;
 
-void Require(bool condition, const std::string& what) {
+void RequireOfRequest(bool condition, const std::string& what) {
   if (!condition) throw std::invalid_argument("plan request: " + what);
 }
 
 void RequireVector(const Eigen::VectorXd& vector, int n, const std::string& name) {
-  Require(vector.size() == n, name + " must have length " + std::to_string(n) + ", has " +
-                                  std::to_string(vector.size()));
-  Require(vector.allFinite(), name + " must be finite");
+  RequireOfRequest(vector.size() == n, name + " must have length " + std::to_string(n) + ", has " +
+                                           std::to_string(vector.size()));
+  RequireOfRequest(vector.allFinite(), name + " must be finite");
 }
 
 bool IsOnGrid(const PlanRequest& request, const Trajectory& trajectory) {
@@ -66,36 +66,37 @@ bool PlanBudget::IsTimeUp() const {
 }
 
 void CheckPlanRequest(const PlanRequest& request, int n) {
-  Require(request.field != nullptr, "there is no field");
-  Require(std::isfinite(request.start.seconds()), "start must be finite");
-  Require(std::isfinite(request.step_s) && request.step_s >= kLeastInterval_s,
-          "step_s must be at least 1e-6 and finite");
-  Require(request.num_states >= 2, "num_states must be >= 2");
+  RequireOfRequest(request.field != nullptr, "there is no field");
+  RequireOfRequest(std::isfinite(request.start.seconds()), "start must be finite");
+  RequireOfRequest(std::isfinite(request.step_s) && request.step_s >= kLeastInterval_s,
+                   "step_s must be at least 1e-6 and finite");
+  RequireOfRequest(request.num_states >= 2, "num_states must be >= 2");
   RequireVector(request.q_start, n, "q_start");
   RequireVector(request.v_start, n, "v_start");
   RequireVector(request.q_goal, n, "q_goal");
-  Require(request.num_fixed >= 1 && request.num_fixed < request.num_states,
-          "num_fixed must be >= 1 and < num_states");
-  Require(request.budget.iterations >= 1, "budget.iterations must be >= 1");
-  Require(request.progress.next_seed >= 0, "progress.next_seed must be >= 0");
+  RequireOfRequest(request.num_fixed >= 1 && request.num_fixed < request.num_states,
+                   "num_fixed must be >= 1 and < num_states");
+  RequireOfRequest(request.budget.iterations >= 1, "budget.iterations must be >= 1");
+  RequireOfRequest(request.progress.next_seed >= 0, "progress.next_seed must be >= 0");
   if (request.progress.best) {
     CheckTrajectory(request.progress.best->trajectory);
-    Require(request.progress.best->trajectory.num_joints() == n,
-            "progress.best must have as many joints as the robot");
+    RequireOfRequest(request.progress.best->trajectory.num_joints() == n,
+                     "progress.best must have as many joints as the robot");
   }
   if (!request.initial) {
-    Require(request.num_fixed == 1 || request.v_start.isZero(0),
-            "without an initial guess, several fixed states need a start at rest");
+    RequireOfRequest(request.num_fixed == 1 || request.v_start.isZero(0),
+                     "without an initial guess, several fixed states need a start at rest");
     return;
   }
   CheckTrajectory(*request.initial);
-  Require(request.initial->num_joints() == n, "initial must have as many joints as the robot");
-  Require(request.initial->num_states() == request.num_states,
-          "initial must have num_states states");
-  Require(IsOnGrid(request, *request.initial), "initial must stand on the request's grid");
-  Require(request.num_fixed == 1 || (request.initial->q.col(0) == request.q_start &&
-                                     request.initial->v.col(0) == request.v_start),
-          "with several fixed states, initial must begin at q_start, v_start");
+  RequireOfRequest(request.initial->num_joints() == n,
+                   "initial must have as many joints as the robot");
+  RequireOfRequest(request.initial->num_states() == request.num_states,
+                   "initial must have num_states states");
+  RequireOfRequest(IsOnGrid(request, *request.initial), "initial must stand on the request's grid");
+  RequireOfRequest(request.num_fixed == 1 || (request.initial->q.col(0) == request.q_start &&
+                                              request.initial->v.col(0) == request.v_start),
+                   "with several fixed states, initial must begin at q_start, v_start");
 }
 
 std::string WhyNoAnswer(const PlanRequest& request, const Trajectory& trajectory) {

@@ -8,7 +8,7 @@
 namespace sidestep::planner {
 namespace {
 
-void Require(bool condition, const std::string& what) {
+void RequireOfSettings(bool condition, const std::string& what) {
   if (!condition) throw std::invalid_argument("planner settings: " + what);
 }
 
@@ -19,10 +19,12 @@ constexpr double kLimitTolerance = 1e-3;  // what an optimum at a limit exceeds 
 }  // namespace
 
 void CheckPlannerSettings(const PlannerSettings& settings) {
-  Require(std::isfinite(settings.epsilon_m) && settings.epsilon_m >= 0, "epsilon_m must be >= 0");
-  Require(IsFraction(settings.velocity_scale), "velocity_scale must be in (0, 1]");
-  Require(IsFraction(settings.acceleration_scale), "acceleration_scale must be in (0, 1]");
-  Require(settings.tool_speed_m_s > 0, "tool_speed_m_s must be > 0");
+  RequireOfSettings(std::isfinite(settings.epsilon_m) && settings.epsilon_m >= 0,
+                    "epsilon_m must be >= 0");
+  RequireOfSettings(IsFraction(settings.velocity_scale), "velocity_scale must be in (0, 1]");
+  RequireOfSettings(IsFraction(settings.acceleration_scale),
+                    "acceleration_scale must be in (0, 1]");
+  RequireOfSettings(settings.tool_speed_m_s > 0, "tool_speed_m_s must be > 0");
 }
 
 double LargestShare(const LimitUse& use, const PlannerSettings& settings) {

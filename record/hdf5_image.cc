@@ -19,7 +19,7 @@ std::size_t NumValues(const std::vector<hsize_t>& shape) {
   return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
 }
 
-void Require(bool done, const std::string& what) {
+void RequireDone(bool done, const std::string& what) {
   if (!done) throw std::runtime_error("HDF5 cannot " + what);
 }
 
@@ -37,9 +37,10 @@ Hdf5Id MakeDataspace(const std::vector<hsize_t>& shape) {
 
 Hdf5Id MakeStringType(std::size_t length) {
   Hdf5Id type(H5Tcopy(H5T_C_S1));
-  Require(H5Tset_size(type, std::max<std::size_t>(1, length)) >= 0 &&
-              H5Tset_cset(type, H5T_CSET_UTF8) >= 0 && H5Tset_strpad(type, H5T_STR_NULLPAD) >= 0,
-          "make a text type");
+  RequireDone(H5Tset_size(type, std::max<std::size_t>(1, length)) >= 0 &&
+                  H5Tset_cset(type, H5T_CSET_UTF8) >= 0 &&
+                  H5Tset_strpad(type, H5T_STR_NULLPAD) >= 0,
+              "make a text type");
   return type;
 }
 
@@ -75,13 +76,13 @@ Hdf5ImageWriter::Hdf5ImageWriter()
         const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS));
         // The earliest format: H5Fget_file_image() spoils the checksum of later superblocks.
         constexpr std::size_t kGrowthBytes = 1 << 20;
-        Require(H5Pset_obj_track_times(creation, false) >= 0 &&
-                    H5Pset_fapl_core(access, kGrowthBytes, /*backing_store=*/false) >= 0 &&
-                    H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V18) >= 0,
-                "set up a file");
+        RequireDone(H5Pset_obj_track_times(creation, false) >= 0 &&
+                        H5Pset_fapl_core(access, kGrowthBytes, /*backing_store=*/false) >= 0 &&
+                        H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V18) >= 0,
+                    "set up a file");
         return H5Fcreate("in memory", H5F_ACC_TRUNC, creation, access);
       }()) {
-  Require(file_.valid(), "create a file in memory");
+  RequireDone(file_.valid(), "create a file in memory");
 }
 
 void Hdf5ImageWriter::SetAttribute(hid_t object, const std::string& name, hid_t file_type,
@@ -89,8 +90,8 @@ void Hdf5ImageWriter::SetAttribute(hid_t object, const std::string& name, hid_t 
   const Hdf5Id space(H5Screate(H5S_SCALAR));
   const Hdf5Id attribute(
       H5Acreate2(object, name.c_str(), file_type, space, H5P_DEFAULT, H5P_DEFAULT));
-  Require(attribute.valid() && H5Awrite(attribute, memory_type, data) >= 0,
-          "write the attribute " + name);
+  RequireDone(attribute.valid() && H5Awrite(attribute, memory_type, data) >= 0,
+              "write the attribute " + name);
 }
 
 void Hdf5ImageWriter::SetAttribute(const std::string& name, const std::string& value) {
@@ -104,9 +105,9 @@ void Hdf5ImageWriter::SetAttribute(const std::string& name, std::int64_t value) 
 
 void Hdf5ImageWriter::MakeGroup(const std::string& path) {
   const Hdf5Id creation(H5Pcreate(H5P_GROUP_CREATE));
-  Require(H5Pset_obj_track_times(creation, false) >= 0, "turn time stamps off");
+  RequireDone(H5Pset_obj_track_times(creation, false) >= 0, "turn time stamps off");
   const Hdf5Id group(H5Gcreate2(file_, path.c_str(), H5P_DEFAULT, creation, H5P_DEFAULT));
-  Require(group.valid(), "create the group " + path);
+  RequireDone(group.valid(), "create the group " + path);
 }
 
 void Hdf5ImageWriter::WriteDataset(const std::string& path, hid_t file_type, hid_t memory_type,
@@ -115,22 +116,22 @@ void Hdf5ImageWriter::WriteDataset(const std::string& path, hid_t file_type, hid
   constexpr unsigned kDeflateLevel = 4;
   constexpr hsize_t kRowsAChunk = 4096;
   const Hdf5Id creation(H5Pcreate(H5P_DATASET_CREATE));
-  Require(H5Pset_obj_track_times(creation, false) >= 0, "turn time stamps off");
+  RequireDone(H5Pset_obj_track_times(creation, false) >= 0, "turn time stamps off");
   const bool has_values = NumValues(shape) > 0;
   if (!shape.empty() && has_values) {
     std::vector<hsize_t> chunk = shape;
     chunk[0] = std::min(chunk[0], kRowsAChunk);
-    Require(H5Pset_chunk(creation, static_cast<int>(chunk.size()), chunk.data()) >= 0 &&
-                H5Pset_shuffle(creation) >= 0 && H5Pset_deflate(creation, kDeflateLevel) >= 0,
-            "set up compression");
+    RequireDone(H5Pset_chunk(creation, static_cast<int>(chunk.size()), chunk.data()) >= 0 &&
+                    H5Pset_shuffle(creation) >= 0 && H5Pset_deflate(creation, kDeflateLevel) >= 0,
+                "set up compression");
   }
   const Hdf5Id space = MakeDataspace(shape);
   const Hdf5Id dataset(
       H5Dcreate2(file_, path.c_str(), file_type, space, H5P_DEFAULT, creation, H5P_DEFAULT));
-  Require(dataset.valid(), "create " + path);
+  RequireDone(dataset.valid(), "create " + path);
   if (has_values) {
-    Require(H5Dwrite(dataset, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0,
-            "write " + path);
+    RequireDone(H5Dwrite(dataset, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0,
+                "write " + path);
   }
   if (!unit.empty()) {
     const Hdf5Id type = MakeStringType(unit.size());
@@ -168,11 +169,11 @@ void Hdf5ImageWriter::Write(const std::string& path, const Hdf5Array<std::string
 }
 
 std::vector<unsigned char> Hdf5ImageWriter::Finish() {
-  Require(H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0, "flush");
+  RequireDone(H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0, "flush");
   const ssize_t size = H5Fget_file_image(file_, nullptr, 0);
-  Require(size > 0, "measure the file");
+  RequireDone(size > 0, "measure the file");
   std::vector<unsigned char> image(static_cast<std::size_t>(size));
-  Require(H5Fget_file_image(file_, image.data(), image.size()) == size, "copy the file");
+  RequireDone(H5Fget_file_image(file_, image.data(), image.size()) == size, "copy the file");
   return image;
 }
 
@@ -186,9 +187,9 @@ Hdf5ImageReader::Hdf5ImageReader(std::span<const unsigned char> image, std::stri
         if (image.empty()) return H5I_INVALID_HID;
         // The library copies the image, and takes a pointer to mutable bytes nevertheless.
         void* const bytes = const_cast<unsigned char*>(image.data());
-        Require(H5Pset_fapl_core(access, /*increment=*/4096, /*backing_store=*/false) >= 0 &&
-                    H5Pset_file_image(access, bytes, image.size()) >= 0,
-                "set up a file");
+        RequireDone(H5Pset_fapl_core(access, /*increment=*/4096, /*backing_store=*/false) >= 0 &&
+                        H5Pset_file_image(access, bytes, image.size()) >= 0,
+                    "set up a file");
         return H5Fopen("in memory", H5F_ACC_RDONLY, access);
       }()) {
   if (!file_.valid()) throw InputError(name_, "does not hold readable HDF5");

@@ -20,7 +20,7 @@
 namespace sidestep::record {
 namespace {
 
-const SealedFormat kFormat = {"sidestep journal", kTraceVersion};
+const SealedFormat kJournalFormat = {"sidestep journal", kTraceVersion};
 constexpr std::chrono::milliseconds kPart(250);
 constexpr std::chrono::milliseconds kAfterAFailure(1000);
 
@@ -164,7 +164,7 @@ void Journal::Write(Recording part, bool is_last) {
   }
   try {
     if (file_ < 0) Open();
-    Append(SealedBytes(kFormat, ToHdf5(*unwritten_)));
+    Append(SealedBytes(kJournalFormat, ToHdf5(*unwritten_)));
     unwritten_.reset();
     is_begun_ = true;
     has_failed_ = false;
@@ -209,7 +209,7 @@ void Journal::Fail() const {
 
 JournalContents ReadJournal(const std::string& path) {
   CheckIsNotBeingWritten(path);
-  const SealedRow row = ReadSealedRow(path, kFormat);
+  const SealedRow row = ReadSealedRow(path, kJournalFormat);
   std::size_t most_bytes = Hdf5ImageReader::kMostBytes;
   JournalContents contents;
   contents.damage = row.damage;

@@ -13,7 +13,7 @@
 namespace sidestep::record {
 namespace {
 
-const SealedFormat kFormat = {"sidestep trace", kTraceVersion};
+const SealedFormat kTraceFormat = {"sidestep trace", kTraceVersion};
 
 using Doubles = Hdf5Array<double>;
 using Integers = Hdf5Array<std::int64_t>;
@@ -21,7 +21,7 @@ using Strings = Hdf5Array<std::string>;
 constexpr hsize_t kAny = Hdf5ImageReader::kAny;
 constexpr double kLatest_s = 3600;
 
-void Require(bool holds, const std::string& what) {
+void RequireOfRecording(bool holds, const std::string& what) {
   if (!holds) throw std::invalid_argument("Recording: " + what);
 }
 
@@ -73,33 +73,38 @@ Eigen::VectorXd ScaleOf(const Recording& recording) {
 
 void CheckRecording(const Recording& recording) {
   const auto n = static_cast<Eigen::Index>(recording.joints.size());
-  Require(recording.q_start.size() == n, "q_start needs one number a joint");
-  Require(recording.q_goal.size() == n, "q_goal needs one number a joint");
-  Require(ScaleOf(recording).size() == n, "tolerance_scale needs one number a joint, or none");
+  RequireOfRecording(recording.q_start.size() == n, "q_start needs one number a joint");
+  RequireOfRecording(recording.q_goal.size() == n, "q_goal needs one number a joint");
+  RequireOfRecording(ScaleOf(recording).size() == n,
+                     "tolerance_scale needs one number a joint, or none");
   ForEachLimit(recording, [&](const std::string& path, const Eigen::VectorXd& limit, const char*) {
-    Require(limit.size() == n, path + " needs one number a joint");
+    RequireOfRecording(limit.size() == n, path + " needs one number a joint");
   });
-  Require(recording.p_WTool.empty() || recording.p_WTool.size() == recording.control.size(),
-          "the tool needs one position a control sample, or none");
-  Require(Increase(Times(recording.control)), "the times of control must increase");
-  Require(Increase(Times(recording.truth)), "the times of truth must increase");
-  Require(Increase(Times(recording.observations)), "the times of observations must increase");
+  RequireOfRecording(
+      recording.p_WTool.empty() || recording.p_WTool.size() == recording.control.size(),
+      "the tool needs one position a control sample, or none");
+  RequireOfRecording(Increase(Times(recording.control)), "the times of control must increase");
+  RequireOfRecording(Increase(Times(recording.truth)), "the times of truth must increase");
+  RequireOfRecording(Increase(Times(recording.observations)),
+                     "the times of observations must increase");
   for (const ControlSample& sample : recording.control) {
     for (const Eigen::VectorXd* column : {&sample.q_command, &sample.v_command, &sample.a_command,
                                           &sample.q, &sample.v, &sample.torque}) {
-      Require(column->size() == n, "a control sample needs one number a joint");
+      RequireOfRecording(column->size() == n, "a control sample needs one number a joint");
     }
   }
   for (const TruthSample& sample : recording.truth) {
-    Require(sample.X_WO.size() == recording.obstacles.size(), "truth needs one pose an obstacle");
+    RequireOfRecording(sample.X_WO.size() == recording.obstacles.size(),
+                       "truth needs one pose an obstacle");
   }
   for (const CycleRecord& cycle : recording.cycles) {
     if (cycle.plan.num_states() > 0) {
       CheckTrajectory(cycle.plan);
-      Require(cycle.plan.num_joints() == n, "a plan needs one number a joint");
+      RequireOfRecording(cycle.plan.num_joints() == n, "a plan needs one number a joint");
     }
     for (const PredictedObject& object : cycle.objects) {
-      Require(object.t.size() == object.X_WO.size(), "a predicted object needs one pose a time");
+      RequireOfRecording(object.t.size() == object.X_WO.size(),
+                         "a predicted object needs one pose a time");
     }
   }
 }
@@ -665,8 +670,8 @@ void ReadObservations(const Hdf5ImageReader& file, Recording* recording) {
 std::vector<unsigned char> ToHdf5(const Recording& recording) {
   CheckRecording(recording);
   Hdf5ImageWriter file;
-  file.SetAttribute("format", kFormat.name);
-  file.SetAttribute("version", kFormat.version);
+  file.SetAttribute("format", kTraceFormat.name);
+  file.SetAttribute("version", kTraceFormat.version);
   WriteHeaderAndMetrics(file, recording);
   WriteProblem(file, recording);
   WriteControl(file, recording);
@@ -681,7 +686,7 @@ std::vector<unsigned char> ToHdf5(const Recording& recording) {
 Recording FromHdf5(std::span<const unsigned char> payload, const std::string& name,
                    std::size_t* most_bytes) {
   const Hdf5ImageReader file(payload, name, *most_bytes);
-  if (file.GetIntegerAttribute("version") != kFormat.version) {
+  if (file.GetIntegerAttribute("version") != kTraceFormat.version) {
     file.Fail("version", "differs from the one in the file's head");
   }
   Recording recording;
@@ -697,12 +702,12 @@ Recording FromHdf5(std::span<const unsigned char> payload, const std::string& na
 }
 
 void WriteRecording(const Recording& recording, const std::string& path) {
-  WriteSealedFile(path, kFormat, ToHdf5(recording));
+  WriteSealedFile(path, kTraceFormat, ToHdf5(recording));
 }
 
 Recording ReadRecording(const std::string& path) {
   std::size_t most_bytes = Hdf5ImageReader::kMostBytes;
-  return FromHdf5(ReadSealedFile(path, kFormat), path, &most_bytes);
+  return FromHdf5(ReadSealedFile(path, kTraceFormat), path, &most_bytes);
 }
 
 std::string Hdf5Version() {

@@ -25,7 +25,7 @@ constexpr double kLargeText = 26, kText = 23, kSmallText = 21;
 constexpr double kTextInset = 10;
 constexpr int kContactFrame = 5;
 // Kept free around what is to be seen, as a share of the scene.
-constexpr double kMargin = 0.03;
+constexpr double kSceneMargin = 0.03;
 constexpr int kLeastScenePixels = 32;
 
 int ToPixels(double length) { return static_cast<int>(std::lround(length)); }
@@ -103,7 +103,7 @@ void Comparison::ChooseViews(const PictureOptions& options) {
   const PixelRect& scene = panels_.front().scene;
   Frustum frustum = ScenePainter::FullFrustum(scene.width, scene.height);
   for (double* const side : {&frustum.left, &frustum.right, &frustum.bottom, &frustum.top}) {
-    *side *= 1 - 2 * kMargin;
+    *side *= 1 - 2 * kSceneMargin;
   }
   const CameraView view = ChooseView(models, frustum);
   for (Panel& panel : panels_) panel.painter.LookFrom(view);

@@ -9,7 +9,7 @@ namespace sidestep::render {
 namespace {
 
 constexpr double kSamples = 2;  // of the ideal picture to a pixel of the camera
-constexpr int kMargin = 3;      // beyond what the lens shows
+constexpr int kLensMargin = 3;  // beyond what the lens shows
 
 }  // namespace
 
@@ -29,9 +29,9 @@ Lens::Lens(const robot::CameraIntrinsics& camera, double blur_px) : camera_(came
       most = most.max(seen.back().array());
     }
   }
-  left_ = least.x() - kMargin * step_;
-  top_ = least.y() - kMargin * step_;
-  const Eigen::Array2d size = (most - least) / step_ + 2 * kMargin;
+  left_ = least.x() - kLensMargin * step_;
+  top_ = least.y() - kLensMargin * step_;
+  const Eigen::Array2d size = (most - least) / step_ + 2 * kLensMargin;
   constexpr double kMostPixels = 8192;  // a lens that folds its picture has no end
   if (!(size < kMostPixels).all()) {
     throw std::invalid_argument("Lens: its distortion reaches too far");

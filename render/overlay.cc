@@ -9,7 +9,7 @@
 namespace sidestep::render {
 namespace {
 
-Eigen::Vector3d ToVector(const float* values) { return {values[0], values[1], values[2]}; }
+Eigen::Vector3d FromFloats(const float* values) { return {values[0], values[1], values[2]}; }
 
 void SetColor(Color color, double opacity) {
   glColor4d(color.r / 255.0, color.g / 255.0, color.b / 255.0, opacity);
@@ -30,14 +30,14 @@ Overlay::Overlay(const mjvScene& scene, const mjrRect& viewport) {
   const mjvGLCamera camera = mjv_averageCamera(&scene.camera[0], &scene.camera[1]);
   const double height = camera.frustum_top - camera.frustum_bottom;
   const double half_width = 0.5 * height * viewport.width / viewport.height;
-  const Eigen::Vector3d back = -ToVector(camera.forward).normalized();
-  right_ = ToVector(camera.up).cross(back).normalized();
+  const Eigen::Vector3d back = -FromFloats(camera.forward).normalized();
+  right_ = FromFloats(camera.up).cross(back).normalized();
   up_ = back.cross(right_);
   Eigen::Matrix4d view = Eigen::Matrix4d::Identity();
   view.block<1, 3>(0, 0) = right_;
   view.block<1, 3>(1, 0) = up_;
   view.block<1, 3>(2, 0) = back;
-  view.block<3, 1>(0, 3) = -view.topLeftCorner<3, 3>() * ToVector(camera.pos);
+  view.block<3, 1>(0, 3) = -view.topLeftCorner<3, 3>() * FromFloats(camera.pos);
   glMatrixMode(GL_PROJECTION);
   glLoadIdentity();
   glFrustum(camera.frustum_center - half_width, camera.frustum_center + half_width,

@@ -13,9 +13,9 @@
 namespace sidestep::render {
 namespace {
 
-constexpr int kMaxGeoms = 4000;
+constexpr int kMaxCameraGeoms = 4000;
 constexpr int kExposures = 3;  // pictures to a smeared one: at 0.5 m/s they are half a pixel apart
-constexpr float kNear_m = 0.05F, kFar_m = 50;
+constexpr float kNearPlane_m = 0.05F, kFarPlane_m = 50;
 
 Lens LensOf(const scenarios::Scenario& scenario) {
   try {
@@ -28,7 +28,7 @@ Lens LensOf(const scenarios::Scenario& scenario) {
 }
 
 // The model for drawing alone, its picture as large as the lens wants it.
-sim::MujocoModelPtr ModelFor(const std::string& world_xml, const Lens& lens) {
+sim::MujocoModelPtr ModelForLens(const std::string& world_xml, const Lens& lens) {
   sim::MujocoModelPtr model = sim::LoadMujocoModel(world_xml, "a camera's world");
   model->vis.global.offwidth = lens.ideal_width();
   model->vis.global.offheight = lens.ideal_height();
@@ -60,9 +60,9 @@ class RenderedCamera::Studio {
                                       scenario.sensor.tag_images->look_at_m)),
         exposure_s_(scenario.sensor.tag_images->exposure_s),
         lens_(LensOf(scenario)),
-        model_(ModelFor(world.xml(), lens_)),
+        model_(ModelForLens(world.xml(), lens_)),
         data_(sim::MakeMujocoData(*model_)),
-        scene_(*model_, kMaxGeoms),
+        scene_(*model_, kMaxCameraGeoms),
         drawing_(*model_) {
     scene_.get().flags[mjRND_SHADOW] = 0;
     scene_.get().flags[mjRND_REFLECTION] = 0;
@@ -157,11 +157,11 @@ class RenderedCamera::Studio {
       Copy(X_WC_.translation(), eye.pos);
       Copy(forward, eye.forward);
       Copy(up, eye.up);
-      eye.frustum_center = kNear_m * static_cast<float>((lens_.left() + lens_.right()) / 2);
-      eye.frustum_top = kNear_m * static_cast<float>(-lens_.top());
-      eye.frustum_bottom = kNear_m * static_cast<float>(-lens_.bottom());
-      eye.frustum_near = kNear_m;
-      eye.frustum_far = kFar_m;
+      eye.frustum_center = kNearPlane_m * static_cast<float>((lens_.left() + lens_.right()) / 2);
+      eye.frustum_top = kNearPlane_m * static_cast<float>(-lens_.top());
+      eye.frustum_bottom = kNearPlane_m * static_cast<float>(-lens_.bottom());
+      eye.frustum_near = kNearPlane_m;
+      eye.frustum_far = kFarPlane_m;
     }
     for (int i = 0; i < scene.nlight; ++i) {
       if (!scene.lights[i].headlight) continue;

@@ -13,17 +13,17 @@
 namespace sidestep::render {
 namespace {
 
-constexpr double kFieldOfView_deg = 24;
+constexpr double kPictureFieldOfView_deg = 24;
 constexpr double kElevation_rad = -0.2;
-constexpr double kMargin = 1.04;  // of the picture that the robot takes
+constexpr double kPictureMargin = 1.04;  // of the picture that the robot takes
 constexpr float kGlass = 0.38F;
 constexpr std::array<std::array<float, 3>, 4> kColors = {
     {{0.90F, 0.35F, 0.20F}, {0.15F, 0.45F, 0.90F}, {0.20F, 0.65F, 0.30F}, {0.75F, 0.45F, 0.85F}}};
 
-sim::MujocoModelPtr ModelFor(const mjModel& model, int size) {
+sim::MujocoModelPtr ModelForPicture(const mjModel& model, int size) {
   sim::MujocoModelPtr copy(mj_copyModel(nullptr, &model));
   copy->vis.global.offwidth = copy->vis.global.offheight = size;
-  copy->vis.global.fovy = static_cast<float>(kFieldOfView_deg);
+  copy->vis.global.fovy = static_cast<float>(kPictureFieldOfView_deg);
   copy->vis.quality.offsamples = 4;
   copy->vis.headlight.ambient[0] = copy->vis.headlight.ambient[1] = copy->vis.headlight.ambient[2] =
       0.35F;
@@ -54,7 +54,7 @@ void AddWall(mjvScene* scene, const CameraView& view, double behind_m) {
 
 Image DrawRobotAndSpheres(const GlContext&, const robot::RobotModel& robot, const mjModel& model,
                           const Eigen::VectorXd& q, int size) {
-  const sim::MujocoModelPtr copy = ModelFor(model, size);
+  const sim::MujocoModelPtr copy = ModelForPicture(model, size);
   const sim::MujocoDataPtr data = sim::MakeMujocoData(*copy);
   sim::PutAt(robot, *copy, q, data.get());
   mj_camlight(copy.get(), data.get());
@@ -64,7 +64,7 @@ Image DrawRobotAndSpheres(const GlContext&, const robot::RobotModel& robot, cons
   std::vector<Eigen::Vector3d> corners;
   const auto add_box = [&corners](const Eigen::Vector3d& p, double radius) {
     for (int i = 0; i < 8; ++i) {
-      corners.push_back(p + radius * kMargin *
+      corners.push_back(p + radius * kPictureMargin *
                                 Eigen::Vector3d((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1,
                                                 (i & 4) != 0 ? 1 : -1));
     }
@@ -81,7 +81,7 @@ Image DrawRobotAndSpheres(const GlContext&, const robot::RobotModel& robot, cons
   }
   const double reach_m = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
 
-  const double tangent = std::tan(kFieldOfView_deg / 2 * std::numbers::pi / 180);
+  const double tangent = std::tan(kPictureFieldOfView_deg / 2 * std::numbers::pi / 180);
   const Frustum frustum = {-tangent, tangent, -tangent, tangent};
   constexpr int kRoom = 16;
   Scene scene(*copy, copy->ngeom + robot.num_spheres() + kRoom);

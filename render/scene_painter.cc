@@ -11,9 +11,9 @@
 namespace sidestep::render {
 namespace {
 
-constexpr int kMaxGeoms = 2000;
-constexpr double kFieldOfView_deg = 32;  // upright; narrow enough to keep shapes true
-constexpr double kPathWidth = 0.011;     // of the picture's height
+constexpr int kMaxSceneGeoms = 2000;
+constexpr double kSceneFieldOfView_deg = 32;  // upright; narrow enough to keep shapes true
+constexpr double kPathWidth = 0.011;          // of the picture's height
 constexpr double kShadowMargin = 1.2;
 constexpr HorizonOffset kTouchShown(0.25);
 constexpr double kTouchRadius_m = 0.045;
@@ -24,7 +24,7 @@ constexpr double kTouchRadius_m = 0.045;
 mjModel& Prepare(mjModel& model, int width, int height) {
   model.vis.global.offwidth = width;
   model.vis.global.offheight = height;
-  model.vis.global.fovy = static_cast<float>(kFieldOfView_deg);
+  model.vis.global.fovy = static_cast<float>(kSceneFieldOfView_deg);
   model.vis.quality.offsamples = 4;
   model.vis.quality.shadowsize = 2048;
   model.vis.quality.numslices = std::clamp(height / 16, 14, 28);
@@ -57,7 +57,7 @@ double MostMoved(const Pose& before, const Pose& after, const Eigen::Vector3d& h
 
 ScenePainter::ScenePainter(const GlContext&, TraceModel& trace, int width, int height)
     : trace_(trace),
-      scene_(Prepare(trace.model(), width, height), kMaxGeoms),
+      scene_(Prepare(trace.model(), width, height), kMaxSceneGeoms),
       drawing_(trace.model()) {
   scene_.get().flags[mjRND_SHADOW] = 1;
   scene_.get().flags[mjRND_REFLECTION] = 0;
@@ -65,7 +65,7 @@ ScenePainter::ScenePainter(const GlContext&, TraceModel& trace, int width, int h
 }
 
 Frustum ScenePainter::FullFrustum(int width, int height) {
-  const double up = std::tan(kFieldOfView_deg / 2 * std::numbers::pi / 180);
+  const double up = std::tan(kSceneFieldOfView_deg / 2 * std::numbers::pi / 180);
   const double right = up * width / height;
   return {-right, right, -up, up};
 }

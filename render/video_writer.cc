@@ -22,7 +22,8 @@ extern "C" {
 #include "sidestep/core/input_error.h"
 
 namespace sidestep::render {
-namespace {
+// What an encoder is made of.
+namespace encoder {
 
 struct AvDeleter {
   void operator()(AVCodecContext* codec) const { avcodec_free_context(&codec); }
@@ -37,26 +38,6 @@ struct AvDeleter {
 };
 template <typename T>
 using AvPtr = std::unique_ptr<T, AvDeleter>;
-
-std::string AvError(int code) {
-  std::array<char, AV_ERROR_MAX_STRING_SIZE> text = {};
-  av_strerror(code, text.data(), text.size());
-  return text.data();
-}
-
-void Check(int code, const std::string& path) {
-  if (code < 0) throw InputError(path, "cannot be written: " + AvError(code));
-}
-
-AvPtr<AVFrame> MakeFrame(AVPixelFormat format, int width, int height) {
-  AvPtr<AVFrame> frame(av_frame_alloc());
-  if (!frame) throw std::bad_alloc();
-  frame->format = format;
-  frame->width = width;
-  frame->height = height;
-  if (av_frame_get_buffer(frame.get(), 0) < 0) throw std::bad_alloc();
-  return frame;
-}
 
 // What libavformat writes goes into our own file and nowhere else: given a name, it would take
 // `file:x.mp4` or `http://x.mp4` for a protocol and `2026-11-27T10:15:00.mp4` for an unknown one.
@@ -83,6 +64,35 @@ struct Cursor {
     }
   }
 };
+
+}  // namespace encoder
+
+namespace {
+
+using encoder::AvDeleter;
+using encoder::AvPtr;
+using encoder::Cursor;
+using encoder::Output;
+
+std::string AvError(int code) {
+  std::array<char, AV_ERROR_MAX_STRING_SIZE> text = {};
+  av_strerror(code, text.data(), text.size());
+  return text.data();
+}
+
+void Check(int code, const std::string& path) {
+  if (code < 0) throw InputError(path, "cannot be written: " + AvError(code));
+}
+
+AvPtr<AVFrame> MakeFrame(AVPixelFormat format, int width, int height) {
+  AvPtr<AVFrame> frame(av_frame_alloc());
+  if (!frame) throw std::bad_alloc();
+  frame->format = format;
+  frame->width = width;
+  frame->height = height;
+  if (av_frame_get_buffer(frame.get(), 0) < 0) throw std::bad_alloc();
+  return frame;
+}
 
 int ReadSome(void* cursor, std::uint8_t* bytes, int size) {
   Cursor& from = *static_cast<Cursor*>(cursor);

@@ -23,7 +23,7 @@ constexpr double kWeightVisibility = 2, kWeightPath = 1.5, kWeightSize = 0.5, kW
 using Points = std::vector<Eigen::Vector3d>;
 
 // Half the extents of a box around a geom, along the geom's axes; zero for a plane.
-Eigen::Vector3d HalfExtents(const mjModel& model, int geom) {
+Eigen::Vector3d GeomHalfExtents(const mjModel& model, int geom) {
   const mjtNum* const size = model.geom_size + 3 * geom;
   switch (model.geom_type[geom]) {
     case mjGEOM_PLANE:
@@ -43,7 +43,7 @@ Eigen::Vector3d HalfExtents(const mjModel& model, int geom) {
 }
 
 void AppendCorners(const TraceModel& trace, int geom, Points* points) {
-  const Eigen::Vector3d half = HalfExtents(trace.model(), geom);
+  const Eigen::Vector3d half = GeomHalfExtents(trace.model(), geom);
   const Pose X_WG = sim::GeomPose(trace.data(), geom);
   for (int corner = 0; corner < 8; ++corner) {
     const Eigen::Vector3d sign((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1,
@@ -157,7 +157,7 @@ bool StandsOut(const TraceModel& trace, int geom, const Eigen::Vector3d& from) {
   const Eigen::Vector3d ray = sim::GeomPosition(trace.data(), geom) - from;
   for (int other = 0; other < model.ngeom; ++other) {
     if (trace.ObstacleOf(other) >= 0 &&
-        MeetsBox(from, ray, sim::GeomPose(trace.data(), other), HalfExtents(model, other))) {
+        MeetsBox(from, ray, sim::GeomPose(trace.data(), other), GeomHalfExtents(model, other))) {
       return false;
     }
   }

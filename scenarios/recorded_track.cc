@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kLongest_s = 86400, kShortestInterval_s = 1e-3;
 constexpr double kTimeRounding_s = 1e-9;  // a day in steps of 1 ms is off by less
-constexpr double kFarthest_m = 1e6, kFastest_m_s = 100;
+constexpr double kFarthestSample_m = 1e6, kFastest_m_s = 100;
 constexpr double kUnitLength = 1e-3;
 // Of the mean speed: below it, a direction is mostly the noise of where it was seen.
 constexpr double kSlow = 0.2;
@@ -88,7 +88,7 @@ std::optional<TrackFault> AppendSample(const std::vector<double>& row,
     return TrackFault{"t", "must be from 0 to 86400 s, is " + Number(sample.t_s)};
   }
   for (const int axis : {0, 1, 2}) {
-    if (!(std::abs(sample.p_WO(axis)) <= kFarthest_m)) {
+    if (!(std::abs(sample.p_WO(axis)) <= kFarthestSample_m)) {
       return TrackFault{std::string(1, "xyz"[axis]),
                         "must be within 1e6 m, is " + Number(sample.p_WO(axis))};
     }

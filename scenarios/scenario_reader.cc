@@ -28,7 +28,7 @@ namespace {
 constexpr int kMaxCellsPerAxis = 512;
 constexpr double kMinCell_m = 0.001, kMaxCell_m = 10;
 // Bounds against slips such as milliseconds given as seconds; generous for any arm.
-constexpr double kMaxHorizon = 60, kMaxRateHz = 1000;
+constexpr double kMaxHorizon = 60, kMaxCycleRateHz = 1000;
 constexpr int kMaxStates = 1001;
 constexpr double kLeastStep_s = 0.001;  // a control tick
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -495,7 +495,7 @@ void ReadPlanner(const YamlReader& top, Scenario& scenario) {
 
 double ReadRate(const YamlReader& map, const char* key) {
   const double rate = map.GetPositive(key);
-  if (rate > kMaxRateHz) map.Fail(key, "must be at most 1000");
+  if (rate > kMaxCycleRateHz) map.Fail(key, "must be at most 1000");
   return rate;
 }
 

@@ -12,7 +12,7 @@ namespace sidestep::scenarios {
 namespace {
 
 // Bounds against slips of the pen, generous for any sensor.
-constexpr double kMaxRateHz = 1000, kMaxDelay = 10, kMaxNoise = 1;
+constexpr double kMaxSensorRateHz = 1000, kMaxDelay = 10, kMaxNoise = 1;
 constexpr int kMaxPixels = 2048;
 constexpr double kMaxLogOdds = 100, kMaxDecay = 1e4, kMaxSigmas = 20;
 constexpr double kMaxTag_m = 2, kMaxOutlier_m = 10;
@@ -71,7 +71,7 @@ CameraSettings ReadCamera(const YamlReader& map) {
   return camera;
 }
 
-TagSettings ReadTags(const YamlReader& map) {
+TagSettings ReadTagSettings(const YamlReader& map) {
   TagSettings tags;
   tags.position_m = map.GetVector3("position_m");
   tags.across_noise = AtMost(map, "across_noise", tags.across_noise, kMaxNoise);
@@ -119,7 +119,7 @@ SensorSettings ReadSensor(const YamlReader& map) {
     }
   }
   settings.rate_hz = map.GetPositive("rate_hz");
-  if (settings.rate_hz > kMaxRateHz) map.Fail("rate_hz", "must be at most 1000");
+  if (settings.rate_hz > kMaxSensorRateHz) map.Fail("rate_hz", "must be at most 1000");
   if (map.Has("cells")) {
     const bool centre = map.GetChoice("cells", {"touched", "centre"}) == "centre";
     settings.cells = centre ? CellRule::kCentre : CellRule::kTouched;
@@ -129,7 +129,7 @@ SensorSettings ReadSensor(const YamlReader& map) {
   settings.dropout = AtMost(map, "dropout", 0, 1);
   if (map.Has("noise")) settings.noise = ReadNoise(map.GetMap("noise"));
   if (map.Has("camera")) settings.camera = ReadCamera(map.GetMap("camera"));
-  if (map.Has("tags")) settings.tags = ReadTags(map.GetMap("tags"));
+  if (map.Has("tags")) settings.tags = ReadTagSettings(map.GetMap("tags"));
   if (map.Has("tag_images")) settings.tag_images = ReadTagImages(map.GetMap("tag_images"));
   map.CheckNoUnknownKeys();
   return settings;

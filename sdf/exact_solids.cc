@@ -10,7 +10,7 @@
 namespace sidestep::sdf {
 namespace {
 
-constexpr double kRounding_m = 1e-9;  // what bounds are wider than their shapes
+constexpr double kShapeRounding_m = 1e-9;  // what bounds are wider than their shapes
 
 }  // namespace
 
@@ -18,7 +18,7 @@ ExactShape::ExactShape(const Shape& shape, const Pose& X_WO)
     : shape_(shape), X_WO_(X_WO), X_OW_(X_WO.Inverse()) {
   const Eigen::Vector3d half_W =
       X_WO.rotation().toRotationMatrix().cwiseAbs() * HalfExtents(shape) +
-      Eigen::Vector3d::Constant(kRounding_m);
+      Eigen::Vector3d::Constant(kShapeRounding_m);
   low_W_ = X_WO.translation() - half_W;
   high_W_ = X_WO.translation() + half_W;
 }

@@ -13,7 +13,7 @@ using field_kernels::Block;
 using field_kernels::kBlockSize;
 
 // What positions may be off by after rounding to float; bounds are that much wider.
-constexpr double kRounding_m = 1e-5;
+constexpr double kFloatRounding_m = 1e-5;
 
 template <class Visitor>
 void ForEachCell(const GridSpec& spec, const Visitor& visit) {
@@ -57,7 +57,7 @@ FieldBound TightBound(const SdfGrid& field_O) {
     const double to_box_m = std::sqrt(SquaredDistance(center, center, bound.low_O, bound.high_O));
     bound.slack_m = std::max(bound.slack_m, to_box_m - double{field_O.At(i, j, k)});
   });
-  bound.slack_m += kRounding_m;
+  bound.slack_m += kFloatRounding_m;
   return bound;
 }
 
@@ -79,7 +79,7 @@ PlacedComposite::PlacedComposite(const SdfGrid& static_W, std::span<const Placed
     const Eigen::Vector3d center_W =
         R_WO * (given.bound.low_O + given.bound.high_O) / 2 + given.X_WO.translation();
     const Eigen::Vector3d half_W = R_WO.cwiseAbs() * (given.bound.high_O - given.bound.low_O) / 2 +
-                                   Eigen::Vector3d::Constant(kRounding_m);
+                                   Eigen::Vector3d::Constant(kFloatRounding_m);
     Object& object = objects_.emplace_back();
     object.field_O = given.field_O;
     object.readable = field_kernels::IsReadable(*given.field_O);
@@ -100,10 +100,10 @@ PlacedComposite::PlacedComposite(const SdfGrid& static_W, std::span<const Placed
   for (std::size_t n = 0; n < objects_.size(); ++n) {
     for (std::size_t a = 0; a < 3; ++a) {
       const Eigen::Index axis = static_cast<Eigen::Index>(a);
-      box_lanes_[a][n] = static_cast<float>(objects_[n].low_W(axis) - kRounding_m);
-      box_lanes_[3 + a][n] = static_cast<float>(objects_[n].high_W(axis) + kRounding_m);
+      box_lanes_[a][n] = static_cast<float>(objects_[n].low_W(axis) - kFloatRounding_m);
+      box_lanes_[3 + a][n] = static_cast<float>(objects_[n].high_W(axis) + kFloatRounding_m);
     }
-    box_lanes_[6][n] = static_cast<float>(objects_[n].slack_m + kRounding_m);
+    box_lanes_[6][n] = static_cast<float>(objects_[n].slack_m + kFloatRounding_m);
   }
   std::fill(box_lanes_[6].begin() + static_cast<std::ptrdiff_t>(objects_.size()),
             box_lanes_[6].end(), 0.0F);

@@ -355,14 +355,14 @@ class KnownWorld final : public MappedWorld {
   std::vector<std::shared_ptr<const SdfGrid>> fields_;  // one an obstacle
 };
 
-struct Word {
+struct KnowledgeWord {
   Knowledge knowledge;
   const char* word;
 };
-constexpr Word kWords[] = {{Knowledge::kStatic, "static"},
-                           {Knowledge::kExecuteAndUpdate, "execute_and_update"},
-                           {Knowledge::kPrediction, "prediction"},
-                           {Knowledge::kFullKnowledge, "full_knowledge"}};
+constexpr KnowledgeWord kKnowledgeWords[] = {{Knowledge::kStatic, "static"},
+                                             {Knowledge::kExecuteAndUpdate, "execute_and_update"},
+                                             {Knowledge::kPrediction, "prediction"},
+                                             {Knowledge::kFullKnowledge, "full_knowledge"}};
 
 }  // namespace
 
@@ -372,14 +372,14 @@ double LargestGrowth(const WorldModelOptions& options) {
 }
 
 std::string ToString(Knowledge knowledge) {
-  for (const Word& entry : kWords) {
+  for (const KnowledgeWord& entry : kKnowledgeWords) {
     if (entry.knowledge == knowledge) return entry.word;
   }
   throw std::invalid_argument("not a kind of knowledge");
 }
 
 Knowledge KnowledgeFromString(const std::string& word) {
-  for (const Word& entry : kWords) {
+  for (const KnowledgeWord& entry : kKnowledgeWords) {
     if (entry.word == word) return entry.knowledge;
   }
   throw std::invalid_argument("unknown knowledge '" + word +

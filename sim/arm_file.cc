@@ -17,7 +17,8 @@ const std::set<std::string_view> kTakenOver = {"compiler",  "default",  "asset",
                                                "worldbody", "contact",  "equality",
                                                "tendon",    "actuator", "sensor"};
 
-[[noreturn]] void Fail(const std::string& name, const XMLElement& element, const std::string& why) {
+[[noreturn]] void FailAtElement(const std::string& name, const XMLElement& element,
+                                const std::string& why) {
   throw InputError(name, element.GetLineNum(), element.Name(), why);
 }
 
@@ -26,7 +27,7 @@ void CheckTies(const XMLElement& equality, const std::string& name) {
   for (const XMLElement* tie = equality.FirstChildElement(); tie != nullptr;
        tie = tie->NextSiblingElement()) {
     if (std::string_view(tie->Name()) == "joint") continue;
-    Fail(name, *tie, "ties bodies together, which planning takes for free; leave it out");
+    FailAtElement(name, *tie, "ties bodies together, which planning takes for free; leave it out");
   }
 }
 
@@ -38,7 +39,8 @@ void CheckArmFile(const XMLElement& root, const std::string& name) {
     const std::string_view tag = section->Name();
     if (tag == "equality") CheckTies(*section, name);
     if (kTakenOver.count(tag) > 0) continue;
-    Fail(name, *section, "is not taken over from a robot, the world has its own; leave it out");
+    FailAtElement(name, *section,
+                  "is not taken over from a robot, the world has its own; leave it out");
   }
   const XMLElement* first = nullptr;
   for (const XMLElement* world = root.FirstChildElement("worldbody"); world != nullptr;
@@ -46,12 +48,12 @@ void CheckArmFile(const XMLElement& root, const std::string& name) {
     for (const XMLElement* child = world->FirstChildElement(); child != nullptr;
          child = child->NextSiblingElement()) {
       if (std::string_view(child->Name()) != "body") {
-        Fail(name, *child, "stands beside the root body, and only that is taken over");
+        FailAtElement(name, *child, "stands beside the root body, and only that is taken over");
       }
       if (first != nullptr) {
-        Fail(name, *child,
-             "is a second root body; a robot has one, which is at line " +
-                 std::to_string(first->GetLineNum()));
+        FailAtElement(name, *child,
+                      "is a second root body; a robot has one, which is at line " +
+                          std::to_string(first->GetLineNum()));
       }
       first = child;
     }

@@ -20,7 +20,7 @@ using Eigen::VectorXd;
 using Pair = std::pair<int, int>;
 
 constexpr double kNearlyAlways = 0.95;  // of the configurations
-constexpr double kTick_s = 0.001;
+constexpr double kControlTick_s = 0.001;
 constexpr double kLeastDamping = 0.5;  // of every mode, relative to the critical one
 constexpr std::size_t kGainConfigurations = 300;
 
@@ -86,7 +86,7 @@ enum class Answer { kGood, kUnstable, kRings };
 // An error under gains that are applied once a tick: v' = v - h M^-1 (K e + D v), e' = e + h v'.
 Answer Try(const MatrixXd& M, const VectorXd& stiffness, const VectorXd& damping) {
   const Eigen::Index n = M.rows();
-  const double h = kTick_s;
+  const double h = kControlTick_s;
   const auto solver = M.ldlt();
   const MatrixXd K = solver.solve(MatrixXd(stiffness.asDiagonal()));
   const MatrixXd D = solver.solve(MatrixXd(damping.asDiagonal()));
@@ -105,7 +105,7 @@ Answer Try(const MatrixXd& M, const VectorXd& stiffness, const VectorXd& damping
 }
 
 // To three digits: more would only look exact.
-double Rounded(double value) {
+double ToThreeDigits(double value) {
   if (!(value > 0)) return 0;
   const double power = 2 - std::floor(std::log10(value));
   const double scale = std::pow(10.0, std::abs(power));
@@ -116,7 +116,7 @@ void FindGains(const robot::ArmDescription& arm, std::vector<MatrixXd> inertias,
                const SurveySettings& settings, ArmSurvey* survey) {
   VectorXd alone = VectorXd::Zero(inertias.front().rows());
   for (const MatrixXd& M : inertias) alone = alone.cwiseMax(M.diagonal());
-  survey->armature = (settings.armature_share * alone).unaryExpr(&Rounded);
+  survey->armature = (settings.armature_share * alone).unaryExpr(&ToThreeDigits);
   for (std::size_t i = 0; i < arm.joints.size(); ++i) {
     if (arm.dynamics[i].armature > 0) survey->armature(arm.joints[i].coordinate) = 0;
   }
@@ -124,9 +124,9 @@ void FindGains(const robot::ArmDescription& arm, std::vector<MatrixXd> inertias,
   alone += survey->armature;
   double bandwidth = settings.bandwidth_rad_s, ratio = 1;
   for (int attempt = 0; attempt < 100; ++attempt) {
-    survey->bandwidth_rad_s = Rounded(bandwidth);
-    survey->stiffness = (bandwidth * bandwidth * alone).unaryExpr(&Rounded);
-    survey->damping = (2 * ratio * bandwidth * alone).unaryExpr(&Rounded);
+    survey->bandwidth_rad_s = ToThreeDigits(bandwidth);
+    survey->stiffness = (bandwidth * bandwidth * alone).unaryExpr(&ToThreeDigits);
+    survey->damping = (2 * ratio * bandwidth * alone).unaryExpr(&ToThreeDigits);
     Answer worst = Answer::kGood;
     for (const MatrixXd& M : inertias) {
       const Answer answer = Try(M, survey->stiffness, survey->damping);

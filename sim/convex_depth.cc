@@ -14,7 +14,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kTolerance_m = 1e-7;
+constexpr double kDepthTolerance_m = 1e-7;
 constexpr int kMaxSplits = 4000;
 
 // The point of the difference of two cores that is farthest along n.
@@ -108,7 +108,7 @@ double LeastReach(const Difference& difference, const Matrix3d& R_AB) {
   }
   for (int split = 0; split < kMaxSplits; ++split) {
     const Patch patch = patches.top();
-    if (patch.bound_m >= least_m - kTolerance_m) break;
+    if (patch.bound_m >= least_m - kDepthTolerance_m) break;
     patches.pop();
     const auto& c = patch.corners;
     std::size_t far = 0;  // the corner across the longest side

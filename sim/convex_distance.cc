@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kTolerance_m = 1e-9;
+constexpr double kDistanceTolerance_m = 1e-9;
 constexpr int kMaxIterations = 1000;
 
 // A point of a core, its middle where that is the origin.
@@ -103,10 +103,10 @@ double CoreDistance(const ConvexSolid& a, const ConvexSolid& b, const Eigen::Iso
   Simplex simplex;
   for (int i = 0; i < kMaxIterations; ++i) {
     const double length = v.norm();
-    if (length < kTolerance_m) return 0;
+    if (length < kDistanceTolerance_m) return 0;
     // No difference lies nearer to the origin than the plane through `w` across v.
     const Vector3d w = CoreSupport(a, -v) - X_AB * CoreSupport(b, X_AB.linear().transpose() * v);
-    if (length - v.dot(w) / length <= kTolerance_m) break;
+    if (length - v.dot(w) / length <= kDistanceTolerance_m) break;
     simplex.points[static_cast<std::size_t>(simplex.size++)] = w;
     const Vector3d next = NearestToOrigin(&simplex);
     if (simplex.size == 4) return 0;            // the origin is inside: the cores overlap

@@ -23,8 +23,8 @@ namespace {
 using tinyxml2::XMLElement;
 
 // Generous for a robot among some hundred things: a world of ours has some 20 kB and 300 elements.
-constexpr std::size_t kMostBytes = 2 << 20;
-constexpr int kMostElements = 5000, kMostJoints = 256;
+constexpr std::size_t kMostForeignBytes = 2 << 20;
+constexpr int kMostForeignElements = 5000, kMostJoints = 256;
 constexpr double kMostTextureBytes = 256 << 20;
 
 // What an attribute may be at most. MuJoCo's memory grows with their squares and products.
@@ -32,7 +32,7 @@ struct Bound {
   std::string_view tag, attribute;  // an empty attribute: all others of the element
   double most;
 };
-constexpr Bound kBounds[] = {
+constexpr Bound kForeignBounds[] = {
     {"size", "njmax", 8000},  // so many doubles squared are allocated
     {"size", "nconmax", 8000},
     {"size", "", 100},
@@ -46,7 +46,8 @@ constexpr Bound kBounds[] = {
 
 // Made to any size from a few words, or of no use here: robots are made of primitives and convex
 // meshes.
-const std::set<std::string_view> kRefused = {"composite", "hfield", "skin", "flexcomp", "plugin"};
+const std::set<std::string_view> kRefusedInForeign = {"composite", "hfield", "skin", "flexcomp",
+                                                      "plugin"};
 
 constexpr int kMostVertices = 20000;  // of all meshes
 
@@ -65,8 +66,9 @@ class Walk {
 
   void Check(const XMLElement& element) {
     const std::string_view tag = element.Name();
-    if (++num_elements_ > kMostElements) {
-      Fail(element, tag, "is one element too many, of at most " + std::to_string(kMostElements));
+    if (++num_elements_ > kMostForeignElements) {
+      Fail(element, tag,
+           "is one element too many, of at most " + std::to_string(kMostForeignElements));
     }
     if ((tag == "joint" || tag == "freejoint") && ++num_joints_ > kMostJoints) {
       Fail(element, tag, "is one joint too many, of at most " + std::to_string(kMostJoints));
@@ -79,7 +81,7 @@ class Walk {
       CheckBound(element, *attribute);
       CheckFinite(element, *attribute);
     }
-    if (kRefused.count(tag) > 0) Fail(element, tag, "is no part of a robot of ours");
+    if (kRefusedInForeign.count(tag) > 0) Fail(element, tag, "is no part of a robot of ours");
     if (tag == "mesh") CheckMesh(element);
     if (tag == "texture") CountTexture(element);
     for (const XMLElement* child = element.FirstChildElement(); child != nullptr;
@@ -99,7 +101,7 @@ class Walk {
 
   // What is no number is left to MuJoCo, which refuses it.
   void CheckBound(const XMLElement& element, const tinyxml2::XMLAttribute& attribute) const {
-    for (const Bound& bound : kBounds) {
+    for (const Bound& bound : kForeignBounds) {
       if (bound.tag != element.Name()) continue;
       if (!bound.attribute.empty() && bound.attribute != attribute.Name()) continue;
       if (std::strtod(attribute.Value(), nullptr) <= bound.most) return;
@@ -163,11 +165,11 @@ class Walk {
 }  // namespace
 
 std::string ReadModelFile(const std::string& path) {
-  const std::string xml = InlineMeshFiles(ReadTextFile(path, kMostBytes), path);
-  if (xml.size() <= kMostBytes) return xml;
+  const std::string xml = InlineMeshFiles(ReadTextFile(path, kMostForeignBytes), path);
+  if (xml.size() <= kMostForeignBytes) return xml;
   throw InputError(path, "is " + std::to_string(xml.size()) +
                              " bytes long with its meshes, must be at most " +
-                             std::to_string(kMostBytes));
+                             std::to_string(kMostForeignBytes));
 }
 
 const XMLElement& ParseModel(const std::string& xml, const std::string& name,
@@ -192,9 +194,9 @@ MujocoModelPtr LoadModelFile(const std::string& path, ModelStore* store) {
 }
 
 MujocoModelPtr LoadForeignModel(const std::string& xml, const std::string& name) {
-  if (xml.size() > kMostBytes) {
+  if (xml.size() > kMostForeignBytes) {
     throw InputError(name, "is " + std::to_string(xml.size()) + " bytes long, must be at most " +
-                               std::to_string(kMostBytes));
+                               std::to_string(kMostForeignBytes));
   }
   tinyxml2::XMLDocument document;
   const XMLElement& root = ParseModel(xml, name, &document);

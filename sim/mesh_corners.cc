@@ -18,13 +18,13 @@ namespace {
 namespace fs = std::filesystem;
 using Corners = std::vector<Eigen::Vector3d>;
 
-constexpr std::uintmax_t kMaxBytes = 256u << 20;
+constexpr std::uintmax_t kMaxMeshBytes = 256u << 20;
 
 std::string ReadBytes(const std::string& path) {
   std::error_code error;
   const std::uintmax_t size = fs::file_size(path, error);
   if (error) throw InputError(path, error.message());
-  if (size > kMaxBytes) throw InputError(path, "is longer than 256 MiB");
+  if (size > kMaxMeshBytes) throw InputError(path, "is longer than 256 MiB");
   std::ifstream stream(path, std::ios::binary);
   std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
   if (!stream && !stream.eof()) throw InputError(path, "cannot be read");

@@ -147,7 +147,7 @@ class Inliner {
   static std::string ToText(const Eigen::Matrix3Xd& points) {
     std::string text;
     for (const double value : points.reshaped()) {
-      text += (text.empty() ? "" : " ") + ShortestText(value + 0.0);
+      text += (text.empty() ? "" : " ") + ShortestNumber(value);
     }
     return text;
   }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kOn = Rasteriser::kOnSurface_m;
 constexpr double kOnCoarse = Rasteriser::kOnCoarseSurface_m;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kEndless_m = std::numeric_limits<double>::infinity();
 
 bool InHalfOpen(double x, double half) { return x >= -half - kOn && x < half - kOn; }
 
@@ -109,7 +109,7 @@ Rasteriser::Solid Rasteriser::MakeSolid(const mjModel& model, int geom) {
   };
   switch (model.geom_type[geom]) {
     case mjGEOM_PLANE:
-      set_half_extents(kInfinity, kInfinity, kInfinity);
+      set_half_extents(kEndless_m, kEndless_m, kEndless_m);
       solid.upper_m.z() = 0;
       break;
     case mjGEOM_HFIELD: {

@@ -20,7 +20,7 @@
 namespace sidestep::sim {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 1e-4;  // what four written digits leave, with room
 constexpr int kNumConfigurations = 16;
 constexpr int kPictureGroup = 2;
@@ -30,7 +30,7 @@ bool AreSame(double a, double b) {
   return std::abs(a - b) <= kRounding * std::max(1.0, std::abs(a));
 }
 
-double Rounded(double value) { return std::round(value * 1e6) / 1e6 + 0.0; }  // no -0
+double ToSixDecimals(double value) { return std::round(value * 1e6) / 1e6 + 0.0; }  // no -0
 
 std::string Millimetres(double length_m) {
   return scenarios::Number(std::round(length_m * 1e5) / 1e2);
@@ -285,11 +285,11 @@ class Comparison {
     const bool is_row = robot_.joints()[i].dh.has_value();
     const std::string what = (frame.is_site ? "the site '" : "the body '") + frame.name + "'";
     FailInYaml(KeyOfJoint(i) + (is_row ? ".dh" : ".origin"),
-               "puts its frame at " + scenarios::List(difference.p_yaml.unaryExpr(&Rounded)) +
+               "puts its frame at " + scenarios::List(difference.p_yaml.unaryExpr(&ToSixDecimals)) +
                    ", " + what + " of " + At(frame.is_site ? "site" : "body", frame.name) +
-                   " is at " + scenarios::List(difference.p_mjcf.unaryExpr(&Rounded)) + ": " +
+                   " is at " + scenarios::List(difference.p_mjcf.unaryExpr(&ToSixDecimals)) + ": " +
                    Millimetres(difference.apart_m) + " mm and " +
-                   scenarios::Number(Rounded(difference.turned_rad)) +
+                   scenarios::Number(ToSixDecimals(difference.turned_rad)) +
                    " rad apart (seen from the " +
                    (is_row ? "frame before, turned with the joint)" : "parent link)"));
   }
@@ -298,9 +298,9 @@ class Comparison {
     const robot::JointLimits& limits = robot_.limits()[static_cast<std::size_t>(i)];
     const bool limited = model_.jnt_limited[joint] != 0;
     const robot::LimitKeys keys = robot::LimitKeysOf(JointOf(i).kind);
-    CheckLimit(i, keys.q_min, limits.q_min, limited ? model_.jnt_range[2 * joint] : -kInfinity,
+    CheckLimit(i, keys.q_min, limits.q_min, limited ? model_.jnt_range[2 * joint] : -kNoLimit,
                "joint", "range");
-    CheckLimit(i, keys.q_max, limits.q_max, limited ? model_.jnt_range[2 * joint + 1] : kInfinity,
+    CheckLimit(i, keys.q_max, limits.q_max, limited ? model_.jnt_range[2 * joint + 1] : kNoLimit,
                "joint", "range");
     if (!std::isfinite(limits.v_max)) {
       FailInYaml(KeyOf(i) + ".limits." + keys.v_max,
@@ -330,7 +330,7 @@ class Comparison {
     if (!is_plain) {
       FailInMjcf("", NameOf(mjOBJ_ACTUATOR, motor), "must be a <motor> of gear 1");
     }
-    double least = -kInfinity, most = kInfinity;
+    double least = -kNoLimit, most = kNoLimit;
     const char* attribute = "ctrlrange";
     if (model_.actuator_ctrllimited[motor] != 0) {
       least = model_.actuator_ctrlrange[2 * motor];
@@ -363,7 +363,7 @@ class Comparison {
                    ", but " +
                    (std::isinf(in_mjcf) ? where + " has no " + attribute
                                         : "the " + attribute + " of " + where + " says " +
-                                              scenarios::Number(Rounded(in_mjcf))));
+                                              scenarios::Number(ToSixDecimals(in_mjcf))));
   }
 
   bool IsOfRobot(int body) const {

@@ -6,7 +6,7 @@
 namespace sidestep::sim {
 namespace {
 
-constexpr double kUnlimited = 3;
+constexpr double kUnlimitedRange = 3;
 
 }  // namespace
 
@@ -14,8 +14,8 @@ Eigen::VectorXd DrawConfiguration(const robot::RobotModel& robot, RandomStream& 
   Eigen::VectorXd q(robot.num_joints());
   for (Eigen::Index i = 0; i < q.size(); ++i) {
     const robot::JointLimits& limits = robot.limits()[static_cast<std::size_t>(i)];
-    const double first = std::max(limits.q_min, std::min(-kUnlimited, limits.q_max - 1));
-    const double last = std::min(limits.q_max, std::max(kUnlimited, limits.q_min + 1));
+    const double first = std::max(limits.q_min, std::min(-kUnlimitedRange, limits.q_max - 1));
+    const double last = std::min(limits.q_max, std::max(kUnlimitedRange, limits.q_min + 1));
     q[i] = random.Uniform(first, last);
   }
   return q;

@@ -28,8 +28,8 @@ constexpr Entry kSensors[] = {
 #undef SIDESTEP_SENSOR
 };
 
-[[noreturn]] void Fail(const scenarios::Scenario& scenario, const std::string& key,
-                       const std::string& why) {
+[[noreturn]] void FailAtKey(const scenarios::Scenario& scenario, const std::string& key,
+                            const std::string& why) {
   const std::string& path = scenario.sensor.path;
   throw scenarios::WrongValue(scenario, path + "." + key, why, {path + ".name"});
 }
@@ -62,9 +62,9 @@ void CheckSensorSettings(const scenarios::Scenario& scenario, std::string_view s
               {"tag_images", sensor.tag_images.has_value()}};
   for (const auto& [key, given] : maps) {
     if (given && settings != key && settings != key + "?") {
-      Fail(scenario, key, "is not for " + of);
+      FailAtKey(scenario, key, "is not for " + of);
     }
-    if (!given && settings == key) Fail(scenario, key, "is missing; " + of + " needs it");
+    if (!given && settings == key) FailAtKey(scenario, key, "is missing; " + of + " needs it");
   }
 }
 
@@ -79,8 +79,9 @@ std::unique_ptr<robot::Sensor> MakeSensor(const scenarios::Scenario& scenario, c
     if (is_prompt) return sensor;
     return std::make_unique<DelayedSensor>(std::move(sensor), settings, world, scenario.seed);
   }
-  Fail(scenario, "name",
-       "is not a known sensor (known: " + Joined(SensorNames()) + "): '" + settings.name + "'");
+  FailAtKey(
+      scenario, "name",
+      "is not a known sensor (known: " + Joined(SensorNames()) + "): '" + settings.name + "'");
 }
 
 }  // namespace sidestep::sim

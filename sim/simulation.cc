@@ -15,7 +15,7 @@ namespace sidestep::sim {
 namespace {
 
 // Times a robot's velocity limits: what a tracker that needs a limit takes for none.
-constexpr double kUnlimited = 10;
+constexpr double kUnlimitedSpeed = 10;
 
 Eigen::VectorXd StartOf(const scenarios::Scenario& scenario, const robot::RobotModel& robot) {
   if (scenario.q_start.size() > 0) return scenario.q_start;
@@ -33,9 +33,9 @@ std::vector<std::string> NamesOf(const std::vector<scenarios::MovingObstacle>& o
 
 // Compiles the world. What is wrong with the robot's own file is told with its lines: those of the
 // whole world are of a text that nobody wrote.
-MujocoModelPtr Compile(const std::string& xml, const scenarios::Scenario& scenario,
-                       const robot::RobotModel& robot, const ModelFolders& models,
-                       ModelStore* store) {
+MujocoModelPtr CompileWorld(const std::string& xml, const scenarios::Scenario& scenario,
+                            const robot::RobotModel& robot, const ModelFolders& models,
+                            ModelStore* store) {
   const std::string name = scenario.file + ": its world";
   const std::string mjcf = RobotMjcf(scenario, models);
   MujocoModelPtr model;
@@ -52,7 +52,7 @@ MujocoModelPtr Compile(const std::string& xml, const scenarios::Scenario& scenar
 World MakeWorld(const scenarios::Scenario& scenario, const robot::RobotModel& robot,
                 const ModelFolders& models, ModelStore* store) {
   std::string xml = BuildWorldXml(scenario, robot.mount_links(), models, store);
-  MujocoModelPtr model = Compile(WithoutPictures(xml), scenario, robot, models, store);
+  MujocoModelPtr model = CompileWorld(WithoutPictures(xml), scenario, robot, models, store);
   return World(scenario, std::move(xml), std::move(model), robot.joint_names(),
                StartOf(scenario, robot));
 }
@@ -73,8 +73,8 @@ Simulation::Simulation(const scenarios::Scenario& scenario, const robot::RobotMo
       world_(MakeWorld(scenario, robot, models, store)),
       truth_(world_),
       robot_(std::make_unique<SimulatedRobot>(
-          robot, &world_, [this] { truth_.Observe(); }, scenario.velocity_limits ? 1 : kUnlimited,
-          SafetyOf(scenario, robot))) {
+          robot, &world_, [this] { truth_.Observe(); },
+          scenario.velocity_limits ? 1 : kUnlimitedSpeed, SafetyOf(scenario, robot))) {
   MakeSensors(scenario, make_sensor);
 }
 

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kMaxBytes = 16u << 20;
+constexpr std::uintmax_t kMaxModelBytes = 16u << 20;
 
 // Of no use for an arm, and where newer attributes stand most often.
 constexpr const char* kLeftOut[] = {"option", "size",   "visual",   "statistic",
@@ -86,7 +86,7 @@ void AnchorFolders(const std::string& path, std::string* xml) {
   }
 }
 
-MujocoModelPtr Compile(const std::string& xml, const std::string& path) {
+MujocoModelPtr CompileTree(const std::string& xml, const std::string& path) {
   try {
     return LoadMujocoModel(xml, path);
   } catch (const InputError& error) {
@@ -369,7 +369,7 @@ class Reader {
 }  // namespace
 
 robot::RobotTree ReadMjcfTree(const std::string& path, bool visuals_as_collisions) {
-  std::string xml = ReadTextFile(path, kMaxBytes);
+  std::string xml = ReadTextFile(path, kMaxModelBytes);
   XmlTag tag;
   if (FindTag(xml, "include", 0, &tag)) {
     const auto line =
@@ -382,7 +382,7 @@ robot::RobotTree ReadMjcfTree(const std::string& path, bool visuals_as_collision
     if (Blank(name, &xml)) left_out.push_back(name);
   }
   AnchorFolders(path, &xml);
-  const MujocoModelPtr model = Compile(xml, path);
+  const MujocoModelPtr model = CompileTree(xml, path);
   robot::RobotTree tree = Reader(*model, path, visuals_as_collisions).Read();
   if (!left_out.empty()) {
     tree.notes.push_back("left out, for the world has its own: <" + Joined(left_out, ">, <") + ">");

@@ -22,14 +22,14 @@ namespace {
 namespace fs = std::filesystem;
 using tinyxml2::XMLElement;
 
-constexpr std::size_t kMostBytes = 64 << 20;
-constexpr int kMostFiles = 100, kMostElements = 20000;
+constexpr std::size_t kMostWorldBytes = 64 << 20;
+constexpr int kMostFiles = 100, kMostWorldElements = 20000;
 
 // Made to any size from a few words.
-const std::set<std::string_view> kRefused = {"composite", "skin", "flexcomp", "plugin"};
+const std::set<std::string_view> kRefusedInWorld = {"composite", "skin", "flexcomp", "plugin"};
 
 // Attributes whose squares and products are allocated, and the most they may be.
-constexpr std::pair<std::string_view, double> kBounds[] = {
+constexpr std::pair<std::string_view, double> kWorldBounds[] = {
     {"width", 4096},    {"height", 4096},   {"nrow", 4096},      {"ncol", 4096},
     {"njmax", 8000},    {"nconmax", 8000},  {"nstack", 1e8},     {"nkey", 1000},
     {"nuserdata", 1e6}, {"offwidth", 8192}, {"offheight", 8192}, {"shadowsize", 16384}};
@@ -43,7 +43,7 @@ class WorldChecker {
     if (++num_files_ > kMostFiles) {
       throw InputError(path, "is one included file too many: they include each other");
     }
-    const std::string xml = ReadTextFile(path, kMostBytes);
+    const std::string xml = ReadTextFile(path, kMostWorldBytes);
     tinyxml2::XMLDocument document;
     if (document.Parse(xml.data(), xml.size()) != tinyxml2::XML_SUCCESS) {
       throw XmlFault(path, document.ErrorLineNum(), document.ErrorName());
@@ -64,11 +64,11 @@ class WorldChecker {
 
   void Check(const XMLElement& element, const std::string& path) {
     const std::string_view tag = element.Name();
-    if (++num_elements_ > kMostElements) {
+    if (++num_elements_ > kMostWorldElements) {
       Fail(element, path, tag,
-           "is one element too many, of at most " + std::to_string(kMostElements));
+           "is one element too many, of at most " + std::to_string(kMostWorldElements));
     }
-    if (kRefused.count(tag) > 0) Fail(element, path, tag, "is not taken");
+    if (kRefusedInWorld.count(tag) > 0) Fail(element, path, tag, "is not taken");
     for (const tinyxml2::XMLAttribute* attribute = element.FirstAttribute(); attribute != nullptr;
          attribute = attribute->Next()) {
       CheckNumbers(element, path, *attribute);
@@ -89,7 +89,7 @@ class WorldChecker {
   static void CheckNumbers(const XMLElement& element, const std::string& path,
                            const tinyxml2::XMLAttribute& attribute) {
     const std::string_view key = attribute.Name();
-    for (const auto& [name, most] : kBounds) {
+    for (const auto& [name, most] : kWorldBounds) {
       if (key != name || std::strtod(attribute.Value(), nullptr) <= most) continue;
       Fail(element, path, key,
            "must be at most " + std::to_string(static_cast<int>(most)) + ", is " +

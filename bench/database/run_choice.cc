@@ -8,7 +8,7 @@ namespace sidestep::bench {
 namespace {
 
 // A million runs take half of them; an endless expression a few seconds.
-constexpr std::int64_t kMostSteps = 300'000'000;
+constexpr std::int64_t kMostSqlSteps = 300'000'000;
 
 // 'it''s'
 std::string SqlText(const std::string& text) {
@@ -99,7 +99,7 @@ void RequireOneExpression(const std::string& flag, const std::string& text) {
 
 std::vector<ChosenRun> ChooseRuns(const RunDatabase& database, const RunChoice& choice) {
   const AskedFactor asked = AskedOf(database);
-  const SqlBudget budget(database.sql(), kMostSteps);
+  const SqlBudget budget(database.sql(), kMostSqlSteps);
   const std::string from = FromSql(database, asked);
   const std::string order = choice.order.empty() ? "min_clearance_m" : choice.order;
   std::string where;

@@ -60,7 +60,7 @@ bool IsOfPlanner(const std::string& factor) {
 std::string SqlType(const FactorColumn& factor) { return factor.is_number ? "REAL" : "TEXT"; }
 
 // What makes a list of columns of a CREATE TABLE.
-std::string Columns(const std::vector<FactorColumn>& factors, bool of_planner) {
+std::string ColumnsSql(const std::vector<FactorColumn>& factors, bool of_planner) {
   std::string text;
   for (const FactorColumn& factor : factors) {
     if (factor.is_planner == of_planner) {
@@ -114,13 +114,13 @@ std::string SchemaSql(const RunTableHead& head) {
          "CREATE TABLE experiments(id INTEGER PRIMARY KEY, name VARCHAR(512), totaltime REAL,"
          " timelimit REAL, memorylimit REAL, runcount INTEGER, version VARCHAR(128),"
          " hostname VARCHAR(1024), cpuinfo TEXT, date DATETIME, seed INTEGER, setup TEXT" +
-         std::string(is_factor("robot") ? "" : ", robot TEXT") + Columns(head.factors, false) +
+         std::string(is_factor("robot") ? "" : ", robot TEXT") + ColumnsSql(head.factors, false) +
          ");"
          "CREATE TABLE plannerConfigs(id INTEGER PRIMARY KEY, name VARCHAR(512) NOT NULL,"
          " settings TEXT" +
          std::string(is_factor("planner") ? "" : ", planner TEXT") +
          (is_factor("knowledge") ? "" : ", knowledge TEXT") +
-         (is_factor("predictor") ? "" : ", predictor TEXT") + Columns(head.factors, true) +
+         (is_factor("predictor") ? "" : ", predictor TEXT") + ColumnsSql(head.factors, true) +
          ");"
          "CREATE TABLE enums(name VARCHAR(512), value INTEGER, description TEXT,"
          " PRIMARY KEY(name, value));"

@@ -12,7 +12,7 @@
 namespace sidestep::bench {
 namespace {
 
-std::vector<FactorColumn> FactorsOf(const std::vector<SingleRun>& runs) {
+std::vector<FactorColumn> FactorsOfRuns(const std::vector<SingleRun>& runs) {
   std::vector<RunRow> rows;
   for (const SingleRun& run : runs) rows.push_back(run.row);
   std::vector<std::pair<std::string, std::vector<std::string>>> factors;
@@ -38,7 +38,7 @@ void WriteRunFiles(const std::string& folder, const RunFilesHead& head,
   table.facts = head.facts;
   table.facts["num_planned"] = table.facts["num_done"] = std::to_string(runs.size());
   table.version = head.version;
-  if (!runs.empty()) table.factors = FactorsOf(runs);
+  if (!runs.empty()) table.factors = FactorsOfRuns(runs);
   table.drawn = DrawnIn(runs);
   for (const SingleRun& run : runs) {
     const auto& known = table.machines;

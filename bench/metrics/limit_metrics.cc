@@ -5,12 +5,12 @@
 #include <limits>
 #include <vector>
 
+#include "sidestep/bench/statistics.h"
 #include "sidestep/planner/limit_use.h"
 
 namespace sidestep::bench {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kTimeEpsilon_s = 1e-9;  // support times are sums of steps, rounded
 
 bool HasLimit(const Eigen::VectorXd& limits) {

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "sidestep/bench/statistics.h"
 #include "sidestep/core/goal.h"
 #include "sidestep/planner/gp_trajectory.h"
 
 namespace sidestep::bench {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kGpStep = 0.1;  // s, the paper's
 
 GoalWatch WatchGoal(const record::Recording& recording) {

@@ -11,10 +11,10 @@
 namespace sidestep::bench {
 namespace {
 
-constexpr double kTimeEpsilon = 1e-9;  // s; recorded times are sums of steps, rounded
+constexpr double kRecordedEpsilon_s = 1e-9;  // s; recorded times are sums of steps, rounded
 
-Eigen::Vector3d Between(double t, double t0, const Eigen::Vector3d& p0, double t1,
-                        const Eigen::Vector3d& p1) {
+Eigen::Vector3d Interpolated(double t, double t0, const Eigen::Vector3d& p0, double t1,
+                             const Eigen::Vector3d& p1) {
   return t1 > t0 ? Eigen::Vector3d(p0 + (t - t0) / (t1 - t0) * (p1 - p0)) : p0;
 }
 
@@ -22,11 +22,11 @@ Eigen::Vector3d Between(double t, double t0, const Eigen::Vector3d& p0, double t
 template <class Series, class TimeOf>
 std::optional<std::size_t> FindAtOrAfter(const Series& series, EpisodeTime t, TimeOf time_of) {
   const auto found = std::partition_point(series.begin(), series.end(), [&](const auto& entry) {
-    return time_of(entry).seconds() < t.seconds() - kTimeEpsilon;
+    return time_of(entry).seconds() < t.seconds() - kRecordedEpsilon_s;
   });
   if (found == series.end()) return std::nullopt;
   const bool before_all =
-      found == series.begin() && time_of(*found).seconds() > t.seconds() + kTimeEpsilon;
+      found == series.begin() && time_of(*found).seconds() > t.seconds() + kRecordedEpsilon_s;
   if (before_all) return std::nullopt;
   return static_cast<std::size_t>(found - series.begin());
 }
@@ -40,8 +40,9 @@ std::vector<Eigen::Vector3d> TruePositions(const record::Recording& recording, E
   const TruthSample& previous = recording.truth[std::max<std::size_t>(*after, 1) - 1];
   std::vector<Eigen::Vector3d> positions;
   for (std::size_t i = 0; i < next.X_WO.size(); ++i) {
-    positions.push_back(Between(t.seconds(), previous.t.seconds(), previous.X_WO[i].translation(),
-                                next.t.seconds(), next.X_WO[i].translation()));
+    positions.push_back(Interpolated(t.seconds(), previous.t.seconds(),
+                                     previous.X_WO[i].translation(), next.t.seconds(),
+                                     next.X_WO[i].translation()));
   }
   return positions;
 }
@@ -50,8 +51,8 @@ std::optional<Eigen::Vector3d> PredictedPosition(const PredictedObject& object, 
   const auto after = FindAtOrAfter(object.t, t, [](EpisodeTime time) { return time; });
   if (!after) return std::nullopt;
   const std::size_t before = std::max<std::size_t>(*after, 1) - 1;
-  return Between(t.seconds(), object.t[before].seconds(), object.X_WO[before].translation(),
-                 object.t[*after].seconds(), object.X_WO[*after].translation());
+  return Interpolated(t.seconds(), object.t[before].seconds(), object.X_WO[before].translation(),
+                      object.t[*after].seconds(), object.X_WO[*after].translation());
 }
 
 }  // namespace

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <utility>
+
+#include "sidestep/bench/statistics.h"
 
 namespace sidestep::bench {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // The first three backward differences of a signal over time, which was at rest before.
 struct Differences {

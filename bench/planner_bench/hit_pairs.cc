@@ -15,7 +15,7 @@ namespace sidestep::bench {
 namespace {
 
 constexpr int kMaxDraws = 10000;
-constexpr double kMargin_m = 0.02;
+constexpr double kClearMargin_m = 0.02;
 
 class Draw {
  public:
@@ -52,9 +52,9 @@ class Draw {
                                        EpisodeTime(to_s))
           .least_m;
     };
-    return clearance_m(still_world, 0, task_.horizon_s) > kMargin_m &&
-           clearance_m(world, 0, latency_s) > kMargin_m &&
-           clearance_m(world, task_.horizon_s, task_.horizon_s) > kMargin_m &&
+    return clearance_m(still_world, 0, task_.horizon_s) > kClearMargin_m &&
+           clearance_m(world, 0, latency_s) > kClearMargin_m &&
+           clearance_m(world, task_.horizon_s, task_.horizon_s) > kClearMargin_m &&
            clearance_m(world, 0, task_.horizon_s) <= 0;
   }
 

@@ -12,7 +12,7 @@ namespace sidestep::bench {
 namespace {
 
 // What a pair shares: the levels of all other factors, and the seed.
-std::vector<std::int64_t> AllElse(const RunTable& runs, std::size_t run, int factor) {
+std::vector<std::int64_t> LevelsBut(const RunTable& runs, std::size_t run, int factor) {
   std::vector<std::int64_t> key = {runs.seed[run]};
   for (std::size_t f = 0; f < runs.levels.size(); ++f) {
     if (static_cast<int>(f) != factor) key.push_back(runs.levels[f][run]);
@@ -27,12 +27,12 @@ std::vector<std::pair<std::size_t, std::size_t>> PairsOf(const RunTable& runs,
   const std::vector<int>& level = runs.levels[static_cast<std::size_t>(question.factor)];
   std::map<std::vector<std::int64_t>, std::size_t> others;
   for (std::size_t run = 0; run < runs.size(); ++run) {
-    if (level[run] == question.with) others.emplace(AllElse(runs, run, question.factor), run);
+    if (level[run] == question.with) others.emplace(LevelsBut(runs, run, question.factor), run);
   }
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t run = 0; run < runs.size(); ++run) {
     if (level[run] != question.of) continue;
-    const auto found = others.find(AllElse(runs, run, question.factor));
+    const auto found = others.find(LevelsBut(runs, run, question.factor));
     if (found != others.end()) pairs.emplace_back(run, found->second);
   }
   return pairs;

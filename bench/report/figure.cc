@@ -19,7 +19,7 @@ std::string Quoted(const std::string& text) {
   return quoted + "'";
 }
 
-std::string Number(double value) { return FiniteText("{:.10g}", value, kNotFinite); }
+std::string PlotNumber(double value) { return FiniteText("{:.10g}", value, kNotFinite); }
 
 std::string BlockName(std::size_t panel, std::size_t series) {
   return "$p" + std::to_string(panel) + "_" + std::to_string(series);
@@ -33,10 +33,10 @@ void WriteData(std::string& script, const Series& series, const std::string& blo
   }
   script += block + " << EOD\n";
   for (std::size_t i = 0; i < series.x.size(); ++i) {
-    script += Number(series.x[i]);
+    script += PlotNumber(series.x[i]);
     for (const double value : {series.y[i], has_band ? series.low[i] : series.y[i],
                                has_band ? series.high[i] : series.y[i]}) {
-      script += " " + Number(value);
+      script += " " + PlotNumber(value);
     }
     script += "\n";
   }
@@ -71,11 +71,12 @@ void WritePanel(std::string& script, const Panel& panel, std::size_t index) {
       names += (i == 0 ? "" : ", ") + Quoted(panel.x_names[i]) + " " + std::to_string(i);
     }
     script += "set xtics (" + names +
-              ")\nset xrange [-0.5:" + Number(static_cast<double>(panel.x_names.size()) - 0.5) +
+              ")\nset xrange [-0.5:" + PlotNumber(static_cast<double>(panel.x_names.size()) - 0.5) +
               "]\n";
   }
   if (panel.y_range.size() == 2) {
-    script += "set yrange [" + Number(panel.y_range[0]) + ":" + Number(panel.y_range[1]) + "]\n";
+    script +=
+        "set yrange [" + PlotNumber(panel.y_range[0]) + ":" + PlotNumber(panel.y_range[1]) + "]\n";
   } else {
     script += "set yrange [*:*]\n";
   }

@@ -25,9 +25,6 @@ figure { margin: 1.5rem 0; } figure img { max-width: 100%; }
 figcaption { color: #555; font-size: 0.9rem; }
 )";
 
-// What HTML takes as it stands.
-std::string Escape(const std::string& text) { return EscapeMarkup(EscapeInvalidUtf8(text)); }
-
 // As a picture of its own and not as part of the page: then names inside two pictures cannot clash.
 std::string DataUri(const std::string& svg) {
   constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
@@ -45,23 +42,25 @@ std::string DataUri(const std::string& svg) {
 
 }  // namespace
 
+std::string Escaped(const std::string& text) { return EscapeMarkup(EscapeInvalidUtf8(text)); }
+
 HtmlPage::HtmlPage(const std::string& title) {
   text_ =
       "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
-      Escape(title) + "</title>\n<style>" + kStyle + "</style>\n<h1>" + Escape(title) + "</h1>\n";
+      Escaped(title) + "</title>\n<style>" + kStyle + "</style>\n<h1>" + Escaped(title) + "</h1>\n";
 }
 
-void HtmlPage::Heading(const std::string& text) { text_ += "<h2>" + Escape(text) + "</h2>\n"; }
+void HtmlPage::Heading(const std::string& text) { text_ += "<h2>" + Escaped(text) + "</h2>\n"; }
 
-void HtmlPage::Paragraph(const std::string& text) { text_ += "<p>" + Escape(text) + "</p>\n"; }
+void HtmlPage::Paragraph(const std::string& text) { text_ += "<p>" + Escaped(text) + "</p>\n"; }
 
 void HtmlPage::Table(const TextTable& table) {
   text_ += "<table>\n";
   std::string tag = "th";
   for (const std::vector<std::string>& row : table) {
     text_ += "<tr>";
-    for (const std::string& cell : row) text_ += "<" + tag + ">" + Escape(cell) + "</" + tag + ">";
+    for (const std::string& cell : row) text_ += "<" + tag + ">" + Escaped(cell) + "</" + tag + ">";
     text_ += "</tr>\n";
     tag = "td";
   }
@@ -72,8 +71,8 @@ void HtmlPage::Picture(const std::string& svg_path, const std::string& caption) 
   std::ifstream stream(svg_path, std::ios::binary);
   if (!stream) throw InputError(svg_path, "cannot be read");
   const std::string svg{std::istreambuf_iterator<char>(stream), {}};
-  text_ += "<figure><img alt=\"" + Escape(caption) + "\" src=\"" + DataUri(svg) +
-           "\"><figcaption>" + Escape(caption) + "</figcaption></figure>\n";
+  text_ += "<figure><img alt=\"" + Escaped(caption) + "\" src=\"" + DataUri(svg) +
+           "\"><figcaption>" + Escaped(caption) + "</figcaption></figure>\n";
 }
 
 std::string HtmlPage::ToText() const { return text_ + "</html>\n"; }

@@ -6,6 +6,9 @@
 
 namespace sidestep::bench {
 
+/// What HTML and SVG take as it stands, also bytes that are no UTF-8.
+std::string Escaped(const std::string& text);
+
 /// A page that stands alone: text, tables and pictures in one file, to be read top to bottom. Texts
 /// are plain: what means something in HTML is escaped, and bytes that are not UTF-8.
 class HtmlPage {

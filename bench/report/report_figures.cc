@@ -1,6 +1,5 @@
 #include "sidestep/bench/report/report_figures.h"
 
-#include <limits>
 #include <numeric>
 
 #include "sidestep/bench/outcome.h"
@@ -13,7 +12,7 @@ namespace sidestep::bench {
 namespace {
 
 constexpr int kMostCurvePoints = 256;
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
 // A level has the same colour in all figures.
 int ColorOf(int level) {
   constexpr int kColors[] = {2, 1, 3, 4, 5, 6, 7, 0};  // of the palette, the clearest first
@@ -28,7 +27,7 @@ bool IsAt(const RunTable& runs, std::size_t run, int factor, int level) {
   return factor < 0 || runs.levels[static_cast<std::size_t>(factor)][run] == level;
 }
 
-double NumberOf(const std::string& text) { return NumberIn<double>(text).value_or(kNone); }
+double NumberOf(const std::string& text) { return NumberIn<double>(text).value_or(kNaN); }
 
 // The axis of a factor's levels, and where each stands on it.
 std::vector<double> LayOut(const RunTable& runs, int factor, Panel* panel) {
@@ -90,8 +89,7 @@ Share ShareOf(const RunTable& runs, int factor, int level, int other_factor, int
     ++share.runs;
     share.goals += runs.Is(run, goal) ? 1 : 0;
   }
-  share.interval =
-      share.runs > 0 ? WilsonInterval(share.goals, share.runs) : Interval{kNone, kNone};
+  share.interval = share.runs > 0 ? WilsonInterval(share.goals, share.runs) : Interval{kNaN, kNaN};
   return share;
 }
 

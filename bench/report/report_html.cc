@@ -5,49 +5,46 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sidestep/bench/report/html_page.h"
 #include "sidestep/bench/report/svg.h"
-#include "sidestep/core/markup.h"
 #include "sidestep/core/number_text.h"
-#include "sidestep/core/utf8.h"
 
 namespace sidestep::bench {
 namespace {
 
-constexpr const char* kNothing = "–";
+constexpr const char* kNoNumber = "–";
 constexpr int kFigureWidth = 450, kFigureHeight = 300;  // so that letters can be read on a phone
 
-const FactorColumn& FactorOf(const RunTable& runs, const Question& question) {
+const FactorColumn& ComparedFactor(const RunTable& runs, const Question& question) {
   return runs.factors[static_cast<std::size_t>(question.factor)];
 }
 
 std::string LevelOf(const RunTable& runs, const Question& question, int level) {
-  return FactorOf(runs, question).values[static_cast<std::size_t>(level)];
+  return ComparedFactor(runs, question).values[static_cast<std::size_t>(level)];
 }
 
 // How a column is told to people.
-struct Told {
+struct ToldColumn {
   const char *column, *label;
   double scale;
 };
-constexpr Told kTold[] = {{"min_clearance_m", "least clearance [mm]", 1e3},
-                          {"time_to_goal_s", "time to the goal [s]", 1},
-                          {"gp_cost", "GP cost", 1},
-                          {"jerk_rms", "jerk, RMS [rad/s³]", 1},
-                          {"cycle_p95_ms", "planning cycle, 95th percentile [ms]", 1}};
+constexpr ToldColumn kTold[] = {{"min_clearance_m", "least clearance [mm]", 1e3},
+                                {"time_to_goal_s", "time to the goal [s]", 1},
+                                {"gp_cost", "GP cost", 1},
+                                {"jerk_rms", "jerk, RMS [rad/s³]", 1},
+                                {"cycle_p95_ms", "planning cycle, 95th percentile [ms]", 1}};
 
-Told ToldOf(const std::string& column) {
-  for (const Told& told : kTold) {
+ToldColumn ToldOf(const std::string& column) {
+  for (const ToldColumn& told : kTold) {
     if (told.column == column) return told;
   }
   return {column.c_str(), column.c_str(), 1};
 }
 
-std::string Number(double value) { return FiniteText("{:.4g}", value, kNothing); }
-std::string Signed(double value) { return FiniteText("{:+.3g}", value, kNothing); }
+std::string ShortNumber(double value) { return FiniteText("{:.4g}", value, kNoNumber); }
+std::string Signed(double value) { return FiniteText("{:+.3g}", value, kNoNumber); }
 
 }  // namespace
-
-std::string Escaped(const std::string& text) { return EscapeMarkup(EscapeInvalidUtf8(text)); }
 
 std::string Heading(const std::string& text) { return "<h2>" + Escaped(text) + "</h2>\n"; }
 
@@ -96,7 +93,7 @@ std::string CommandHtml(const std::string& command) {
          Escaped(command) + "</code></div>";
 }
 
-std::string Percent(double share) { return FiniteText("{:.1f} %", 100 * share, kNothing); }
+std::string Percent(double share) { return FiniteText("{:.1f} %", 100 * share, kNoNumber); }
 
 std::string PText(double p) { return p < 1e-4 ? "p < 0.0001" : fmt::format("p = {:.2g}", p); }
 
@@ -116,7 +113,7 @@ std::string AnswerSentence(const RunTable& runs, const Comparison& comparison, b
                                         ? fmt::format(" (95 % interval {:+.1f} to {:+.1f})",
                                                       100 * interval.low, 100 * interval.high)
                                         : " (no interval: all pairs are of one seed)";
-  return word("With " + FactorOf(runs, question).name + " ") +
+  return word("With " + ComparedFactor(runs, question).name + " ") +
          strong(LevelOf(runs, question, question.of)) +
          word(" the robot reached its goal and touched nothing in ") +
          share(rates.first_successes) + word(", with ") +
@@ -133,7 +130,7 @@ std::string AnswerSentence(const RunTable& runs, const Comparison& comparison, b
 
 std::string AnswerNote(const RunTable& runs, const Comparison& comparison) {
   const PairedRates& rates = comparison.rates;
-  const std::string name = FactorOf(runs, comparison.question).name;
+  const std::string name = ComparedFactor(runs, comparison.question).name;
   std::string note = fmt::format(
       "Pairs agree in everything but {}, the seed included. {} pairs differ: in {} only the first "
       "arrived, in {} only the second. ",
@@ -166,14 +163,14 @@ std::string MetricsTableHtml(const RunTable& runs, const Comparison& comparison)
       {"median of", Breakable(LevelOf(runs, question, question.of)),
        Breakable(LevelOf(runs, question, question.with)), "difference (95 %)", "pairs"}};
   for (const MetricComparison& metric : comparison.metrics) {
-    const Told told = ToldOf(metric.column);
+    const ToldColumn told = ToldOf(metric.column);
     std::string difference = Signed(told.scale * metric.difference);
     if (std::isfinite(metric.interval.low)) {
       difference += " (" + Signed(told.scale * metric.interval.low) + " to " +
                     Signed(told.scale * metric.interval.high) + ")";
     }
-    rows.push_back({Escaped(told.label), Number(told.scale * metric.first),
-                    Number(told.scale * metric.second), difference,
+    rows.push_back({Escaped(told.label), ShortNumber(told.scale * metric.first),
+                    ShortNumber(told.scale * metric.second), difference,
                     std::to_string(metric.num_pairs)});
   }
   return TableHtml(rows);

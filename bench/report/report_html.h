@@ -11,9 +11,6 @@ namespace sidestep::bench {
 
 // Pieces of a report's page. Texts are plain but where a name ends in _html.
 
-/// What HTML takes as it stands, also bytes that are no UTF-8.
-std::string Escaped(const std::string& text);
-
 std::string Heading(const std::string& text);
 std::string Paragraph(const std::string& text_html, const std::string& css_class = "");
 /// With a caption, in the colours of the page.

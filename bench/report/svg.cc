@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "sidestep/core/markup.h"
+#include "sidestep/bench/report/html_page.h"
 #include "sidestep/core/utf8.h"
 
 namespace sidestep::bench {
@@ -18,8 +18,6 @@ namespace {
 constexpr double kLeft = 62, kRight = 16, kBottom = 54, kKeyLine = 20, kTitle = 22;
 constexpr double kLetter = 7.1;  // about as wide as one of 13 px
 constexpr std::size_t kLongestName = 28;
-
-std::string Escaped(const std::string& text) { return EscapeMarkup(EscapeInvalidUtf8(text)); }
 
 std::string Shortened(const std::string& text) {
   if (text.size() <= kLongestName) return text;

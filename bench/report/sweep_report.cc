@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "sidestep/bench/outcome.h"
+#include "sidestep/bench/report/html_page.h"
 #include "sidestep/bench/report/report_figures.h"
 #include "sidestep/bench/report/report_html.h"
 #include "sidestep/bench/report/web_files.h"

@@ -9,16 +9,16 @@ constexpr int kMainGrid = 96;           // voxels per side of the publication's 
 constexpr int kStepOfRates = 10;        // predictions are timed from this step on
 constexpr double kSceneMargin_m = 0.2;  // of the published timings
 constexpr int kSteps = 31;
-constexpr double kStep_s = 0.1;
+constexpr double kPublishedStep_s = 0.1;
 
-EpisodeTime At(int step) { return EpisodeTime(step * kStep_s); }
+EpisodeTime TimeOfStep(int step) { return EpisodeTime(step * kPublishedStep_s); }
 
 // The fields of all later steps, as step `now` predicts them.
 void TimeStep(const scenarios::Scenario& scene, const GridSpec& grid, double margin_m, int now,
               std::vector<double>& init_s, std::vector<PredictionTimes>& predictions) {
-  FieldTimer timer(scene, grid, margin_m, At(now - 1), At(now));
+  FieldTimer timer(scene, grid, margin_m, TimeOfStep(now - 1), TimeOfStep(now));
   init_s.push_back(timer.init_s());
-  for (int k = now + 1; k < kSteps; ++k) predictions.push_back(timer.Time(At(k)));
+  for (int k = now + 1; k < kSteps; ++k) predictions.push_back(timer.Time(TimeOfStep(k)));
 }
 
 }  // namespace

@@ -16,12 +16,12 @@ namespace {
 constexpr double kPlotStep_s = 0.01;  // a point each, of the control rate's 1 kHz
 
 // The columns of the rates: name, words, and whether a line of the figure.
-struct Rate {
+struct RateColumn {
   const char* column;
   const char* words;
   const char* published;  // column of ours for the published figure; empty: none
 };
-constexpr Rate kRates[] = {
+constexpr RateColumn kRates[] = {
     {"update_fastest_hz", "update, shortest cycle", "published_update_fastest_hz"},
     {"update_median_hz", "update, median cycle", "published_update_median_hz"},
     {"update_slowest_hz", "update, longest cycle", "published_update_slowest_hz"},
@@ -121,10 +121,10 @@ TextTable WholeRunRows(const WholeRunTimes& times) {
 // Ours, and in brackets the published figure if there is one.
 TextTable RateRows(const CsvTable& rates) {
   TextTable rows = {{"voxels a side"}};
-  for (const Rate& rate : kRates) rows[0].push_back(rate.words);
+  for (const RateColumn& rate : kRates) rows[0].push_back(rate.words);
   for (std::size_t row = 0; row < rates.num_rows(); ++row) {
     rows.push_back({FiniteText("{:.0f}", rates.At(row, 0).value())});
-    for (const Rate& rate : kRates) {
+    for (const RateColumn& rate : kRates) {
       std::string cell =
           FiniteText("{:.3g} Hz", rates.At(row, rates.Find(rate.column).value()).value());
       const auto column = rates.Find(rate.published);
@@ -141,8 +141,8 @@ TextTable RateRows(const CsvTable& rates) {
 
 CsvTable MakeRatesTable(const ClosedLoopStudy& study, const PublishedRates& published) {
   std::vector<std::string> columns = {kVoxelsColumn, "n_cycles"};
-  for (const Rate& rate : kRates) columns.emplace_back(rate.column);
-  for (const Rate& rate : kRates) {
+  for (const RateColumn& rate : kRates) columns.emplace_back(rate.column);
+  for (const RateColumn& rate : kRates) {
     if (*rate.published != '\0') columns.emplace_back(rate.published);
   }
   CsvTable table(columns);
@@ -197,7 +197,7 @@ Figure MakeJointsFigure(const ClosedLoopStudy& study) {
 
 Figure MakeRatesFigure(const CsvTable& rates) {
   std::vector<SizeCurve> curves;
-  for (const Rate& rate : kRates) {
+  for (const RateColumn& rate : kRates) {
     SizeCurve& curve = curves.emplace_back();
     curve.words = rate.words;
     const auto their_column = rates.Find(rate.published);

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sidestep/bench/reproduce/published_maps.h"
 #include "sidestep/core/cpu_time.h"
 #include "sidestep/core/random.h"
 #include "sidestep/sdf/map/object_field.h"
@@ -16,7 +17,6 @@
 namespace sidestep::bench {
 namespace {
 
-constexpr sdf::DistanceConvention kConvention = sdf::DistanceConvention::kBwdist;
 constexpr int kQueries = 20000;
 
 std::vector<sdf::Component> FindObjects(const scenarios::Scenario& scene,
@@ -77,14 +77,14 @@ FieldTimer::FieldTimer(const scenarios::Scenario& scene, const GridSpec& grid, d
 
   double begin_s = ThreadCpuSeconds();
   static_W_ = std::make_shared<const sdf::SdfGrid>(
-      transform_.Compute(static_occupancy_, {.convention = kConvention}));
+      transform_.Compute(static_occupancy_, {.convention = kPublishedConvention}));
   init_s_ = ThreadCpuSeconds() - begin_s;
   for (const sdf::Component& component : after) {
     OccupancyGrid shape_O = sdf::CutOut(component, grid);
     shape_O.spec.first_center_m -= component.centroid_m;
     begin_s = ThreadCpuSeconds();
-    auto field_O =
-        std::make_shared<const sdf::SdfGrid>(sdf::MakeObjectField(shape_O, margin_m, kConvention));
+    auto field_O = std::make_shared<const sdf::SdfGrid>(
+        sdf::MakeObjectField(shape_O, margin_m, kPublishedConvention));
     init_s_ += ThreadCpuSeconds() - begin_s;
 
     auto object = std::make_shared<sdf::TrackedObject>();
@@ -120,7 +120,7 @@ OccupancyGrid FieldTimer::PredictMap(EpisodeTime t) const {
 }
 
 void FieldTimer::ComputeExact(const OccupancyGrid& map) {
-  transform_.Compute(map, {.convention = kConvention}, exact_m_);
+  transform_.Compute(map, {.convention = kPublishedConvention}, exact_m_);
 }
 
 PredictionTimes FieldTimer::Time(EpisodeTime t) {

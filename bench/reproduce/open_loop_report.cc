@@ -21,7 +21,7 @@ std::string Words(sdf::Knowledge knowledge) {
   return words;
 }
 
-std::string Between(const char* format, const Interval& interval, double scale = 1) {
+std::string IntervalText(const char* format, const Interval& interval, double scale = 1) {
   return "[" + FiniteText(format, scale * interval.low) + ", " +
          FiniteText(format, scale * interval.high) + "]";
 }
@@ -126,7 +126,7 @@ void AddRates(HtmlPage& page, const OpenLoopStatistics& statistics) {
   for (const FreeRate& rate : statistics.pooled) {
     rows.push_back({Words(rate.knowledge), Of(rate.num_free, rate.num_rows),
                     FiniteText("{:.1f} %", kPercent * rate.num_free / rate.num_rows),
-                    Between("{:.1f}", rate.wilson, kPercent),
+                    IntervalText("{:.1f}", rate.wilson, kPercent),
                     FiniteText("{:.2f}", rate.mean_gp_cost)});
   }
   page.Table(rows);
@@ -137,15 +137,15 @@ void AddComparisons(HtmlPage& page, const OpenLoopStatistics& statistics) {
                      "McNemar, speeds", "median GP cost", "Wilcoxon, speeds", "of both free"}};
   for (const KnowledgeComparison& c : statistics.comparisons) {
     const int num_speeds = static_cast<int>(c.levels.size());
-    rows.push_back(
-        {Words(c.first) + " minus " + Words(c.second),
-         std::to_string(c.only_first) + " : " + std::to_string(c.only_second),
-         FiniteText("{:+.1f}", kPercent * c.rate_difference) + " " +
-             Between("{:.1f}", c.rate_interval, kPercent),
-         Of(c.CountSignificantOutcomes(), num_speeds),
-         FiniteText("{:+.2f}", c.median_cost_difference) + " " + Between("{:.2f}", c.cost_interval),
-         Of(c.CountSignificantCosts(&LevelComparison::all), num_speeds),
-         Of(c.CountSignificantCosts(&LevelComparison::both_succeed), num_speeds)});
+    rows.push_back({Words(c.first) + " minus " + Words(c.second),
+                    std::to_string(c.only_first) + " : " + std::to_string(c.only_second),
+                    FiniteText("{:+.1f}", kPercent * c.rate_difference) + " " +
+                        IntervalText("{:.1f}", c.rate_interval, kPercent),
+                    Of(c.CountSignificantOutcomes(), num_speeds),
+                    FiniteText("{:+.2f}", c.median_cost_difference) + " " +
+                        IntervalText("{:.2f}", c.cost_interval),
+                    Of(c.CountSignificantCosts(&LevelComparison::all), num_speeds),
+                    Of(c.CountSignificantCosts(&LevelComparison::both_succeed), num_speeds)});
   }
   page.Table(rows);
 }

@@ -8,7 +8,7 @@ namespace {
 
 using Runs = std::vector<OpenLoopOutcome>;
 
-FreeRate Rate(sdf::Knowledge knowledge, const Runs& runs) {
+FreeRate FreeRateOf(sdf::Knowledge knowledge, const Runs& runs) {
   FreeRate rate;
   rate.knowledge = knowledge;
   rate.num_rows = static_cast<int>(runs.size());
@@ -44,7 +44,7 @@ std::vector<FreeRate> FreeRatesBySpeed(const std::vector<MatchedOutcomes>& rows)
   }
   std::vector<FreeRate> rates;
   for (const auto& [group, runs] : groups) {
-    rates.push_back(Rate(group.first, runs));
+    rates.push_back(FreeRateOf(group.first, runs));
     rates.back().speed_m_s = group.second;
   }
   return rates;
@@ -66,7 +66,7 @@ OpenLoopStatistics ComputeOpenLoopStatistics(const std::vector<MatchedOutcomes>&
     for (const auto& [knowledge, run] : row.runs) runs[knowledge].push_back(run);
   }
   for (auto first = runs.begin(); first != runs.end(); ++first) {
-    statistics.pooled.push_back(Rate(first->first, first->second));
+    statistics.pooled.push_back(FreeRateOf(first->first, first->second));
     for (auto second = runs.begin(); second != first; ++second) {
       const std::vector<PairedCase> matches = MatchRows(left.rows, first->first, second->first);
       if (matches.empty()) continue;

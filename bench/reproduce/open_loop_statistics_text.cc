@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "sidestep/bench/json_text.h"
@@ -12,21 +11,22 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-Json Bounds(const Interval& interval) { return {Number(interval.low), Number(interval.high)}; }
+Json Bounds(const Interval& interval) {
+  return {NumberOrNull(interval.low), NumberOrNull(interval.high)};
+}
 
 Json ToJson(const FreeRate& rate) {
   return {{"knowledge", ToString(rate.knowledge)},
           {"rows", rate.num_rows},
           {"free", rate.num_free},
           {"free_rate_wilson_95", Bounds(rate.wilson)},
-          {"mean_gp_cost", Number(rate.mean_gp_cost)}};
+          {"mean_gp_cost", NumberOrNull(rate.mean_gp_cost)}};
 }
 
 Json ToJson(const CostComparison& costs) {
   return {{"rows", costs.num_rows},
           {"rows_without_finite_cost", costs.num_not_finite},
-          {"hodges_lehmann_shift", Number(costs.shift)},
+          {"hodges_lehmann_shift", NumberOrNull(costs.shift)},
           {"wilcoxon_p", costs.p},
           {"wilcoxon_p_holm", costs.p_holm}};
 }
@@ -50,7 +50,7 @@ Json ToJson(const KnowledgeComparison& comparison) {
                {"only_second_free", comparison.only_second},
                {"free_rate_difference", comparison.rate_difference},
                {"free_rate_difference_bootstrap_95", Bounds(comparison.rate_interval)},
-               {"median_gp_cost_difference", Number(comparison.median_cost_difference)},
+               {"median_gp_cost_difference", NumberOrNull(comparison.median_cost_difference)},
                {"median_gp_cost_difference_bootstrap_95", Bounds(comparison.cost_interval)},
                {"by_speed", Json::array()}};
   for (const LevelComparison& speed : comparison.levels) json["by_speed"].push_back(ToJson(speed));

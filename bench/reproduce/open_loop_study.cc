@@ -13,8 +13,6 @@
 namespace sidestep::bench {
 namespace {
 
-constexpr sdf::DistanceConvention kConvention = sdf::DistanceConvention::kBwdist;
-
 // What the planner believes at solve `now` of step k; `predicted` is asked under prediction only.
 BelievedField MakeBelief(sdf::Knowledge knowledge,
                          const std::vector<const sdf::DistanceField*>& truth,
@@ -71,12 +69,12 @@ OpenLoopStudy RunOpenLoopStudy(const OpenLoopExperiment& experiment, const std::
 
   const PublishedMaps maps(
       experiment, options.intended_geometry ? BoxAlignment::kIntended : BoxAlignment::kOneCellLow,
-      kConvention, options.num_jobs);
+      kPublishedConvention, options.num_jobs);
 
   std::optional<PredictedMaps> predicted;
   if (std::find(options.cases.begin(), options.cases.end(), sdf::Knowledge::kPrediction) !=
       options.cases.end()) {
-    predicted.emplace(experiment, maps, kConvention, options.predictor,
+    predicted.emplace(experiment, maps, kPublishedConvention, options.predictor,
                       experiment.epsilon_m + robot.largest_sphere_radius_m(), options.num_jobs);
   }
 

@@ -11,6 +11,9 @@
 
 namespace sidestep::bench {
 
+/// How the authors measure distances.
+inline constexpr sdf::DistanceConvention kPublishedConvention = sdf::DistanceConvention::kBwdist;
+
 /// The worlds of an experiment, frozen at each of its steps: occupancy by the published rasteriser
 /// and its distance field. Steps and speeds that fill the same cells share one field. Immutable;
 /// safe from many threads.

@@ -14,18 +14,18 @@
 namespace sidestep::bench {
 namespace {
 
-struct Measure {
+struct CaseMeasure {
   const char* prefix;
   bool is_count;
   double (*get)(const OpenLoopRow::Case& entry);
 };
-constexpr Measure kPublishedMeasures[] = {
+constexpr CaseMeasure kPublishedMeasures[] = {
     {kCollidingPrefix, true,
      [](const OpenLoopRow::Case& c) { return static_cast<double>(c.result.colliding_states); }},
     {kGpCostPrefix, false, [](const OpenLoopRow::Case& c) { return c.result.gp_cost; }},
     {kObstacleCostPrefix, false, [](const OpenLoopRow::Case& c) { return c.result.obstacle_cost; }},
 };
-constexpr Measure kOwnMeasures[] = {
+constexpr CaseMeasure kOwnMeasures[] = {
     {"iterations_", true,
      [](const OpenLoopRow::Case& c) { return static_cast<double>(c.result.iterations); }},
     {"true_clearance_moving_m_", false,
@@ -42,27 +42,27 @@ struct Column {
   double (*get)(const OpenLoopRow::Case& entry);
 };
 
-std::vector<Column> Columns(const OpenLoopStudy& study) {
+std::vector<Column> ColumnsWithin(const OpenLoopStudy& study) {
   std::vector<Column> columns;
-  const auto add = [&](const Measure& measure, const PublishedCase& entry) {
+  const auto add = [&](const CaseMeasure& measure, const PublishedCase& entry) {
     if (study.rows.empty() || !study.rows.front().cases.contains(entry.knowledge)) return;
     columns.push_back({std::string(measure.prefix) + entry.name, entry.knowledge, measure.get});
   };
   for (const bool is_published : {true, false}) {
-    for (const Measure& measure : kPublishedMeasures) {
+    for (const CaseMeasure& measure : kPublishedMeasures) {
       for (const PublishedCase& entry : kPublishedCases) {
         if (entry.is_published == is_published) add(measure, entry);
       }
     }
   }
-  for (const Measure& measure : kOwnMeasures) {
+  for (const CaseMeasure& measure : kOwnMeasures) {
     for (const PublishedCase& entry : kPublishedCases) add(measure, entry);
   }
   return columns;
 }
 
-const Measure* PublishedMeasure(const std::string& column) {
-  for (const Measure& measure : kPublishedMeasures) {
+const CaseMeasure* PublishedMeasure(const std::string& column) {
+  for (const CaseMeasure& measure : kPublishedMeasures) {
     if (column.starts_with(measure.prefix)) return &measure;
   }
   return nullptr;
@@ -99,7 +99,7 @@ double RelativeDifference(double ours, double published) {
 }  // namespace
 
 CsvTable MakeOpenLoopTable(const OpenLoopStudy& study) {
-  const std::vector<Column> columns = Columns(study);
+  const std::vector<Column> columns = ColumnsWithin(study);
   std::vector<std::string> names = {kPairColumn, kSpeedColumn};
   for (const Column& column : columns) names.push_back(column.name);
   names.push_back("n_ignored_spheres");
@@ -140,7 +140,7 @@ TableComparison CompareTables(const CsvTable& ours, const CsvTable& published,
   comparison.rows_only_published = static_cast<int>(their_rows.size()) - comparison.rows_compared;
 
   for (const std::string& name : ours.columns()) {
-    const Measure* const measure = PublishedMeasure(name);
+    const CaseMeasure* const measure = PublishedMeasure(name);
     const auto our_column = ours.Find(name), their_column = published.Find(name);
     if (measure == nullptr || !their_column) continue;
     ColumnComparison column;

@@ -15,18 +15,18 @@
 namespace sidestep::bench {
 namespace {
 
-constexpr double kMargin_m = 0.2;
+constexpr double kFieldMargin_m = 0.2;
 constexpr EpisodeTime kFirstSeen(0.2), kSecondSeen(0.6);
 constexpr int kMoments = 31;
 
 // A measure of each prediction, and what the published file calls the mean of the same thing.
-struct Measure {
+struct TimedMeasure {
   const char* name;
   const char* words;
   const char* published;  // empty: not published
   double PredictionTimes::*value;
 };
-constexpr Measure kMeasures[] = {
+constexpr TimedMeasure kTimedMeasures[] = {
     {"full_computation_ms", "full computation", "full_computation_mean_ms",
      &PredictionTimes::full_s},
     {"dense_composite_ms", "dense composite", "composite_prediction_mean_ms",
@@ -71,7 +71,7 @@ std::vector<Entry> Entries(const CsvTable& ours, std::size_t row,
     return cell;
   };
   std::vector<Entry> entries = {{"initialisation", text(kInit, kPublishedInit)}};
-  for (const Measure& measure : kMeasures) {
+  for (const TimedMeasure& measure : kTimedMeasures) {
     entries.push_back({measure.words, text(measure.name, measure.published)});
   }
   const auto ratio = [&](const char* measure) {
@@ -99,7 +99,7 @@ std::vector<SdfTimingSize> RunSdfTiming(const SdfTimingOptions& options,
     for (const std::string& name : options.scenes) {
       const scenarios::Scenario scene = LoadBoxScene(scenarios_dir + "/" + name + ".yaml");
       for (int repeat = 0; repeat < options.repeats; ++repeat) {
-        FieldTimer timer(scene, grid, kMargin_m, kFirstSeen, kSecondSeen);
+        FieldTimer timer(scene, grid, kFieldMargin_m, kFirstSeen, kSecondSeen);
         size.init_s.push_back(timer.init_s());
         for (int moment = 0; moment < kMoments; ++moment) {
           const EpisodeTime t(moment / 10.0);
@@ -127,7 +127,7 @@ CsvTable MakeSdfTimingTable(const std::vector<SdfTimingSize>& sizes) {
     }
   };
   add_columns(kInit);
-  for (const Measure& measure : kMeasures) add_columns(measure.name);
+  for (const TimedMeasure& measure : kTimedMeasures) add_columns(measure.name);
   columns.insert(columns.end(), {"n_compared", "largest_error_free_m", "largest_error_inside_m"});
   CsvTable table(columns);
   for (const SdfTimingSize& size : sizes) {
@@ -135,7 +135,7 @@ CsvTable MakeSdfTimingTable(const std::vector<SdfTimingSize>& sizes) {
                                               static_cast<double>(size.predictions.size()),
                                               static_cast<double>(size.init_s.size())};
     AppendQuantiles(row, size.init_s);
-    for (const Measure& measure : kMeasures) {
+    for (const TimedMeasure& measure : kTimedMeasures) {
       AppendQuantiles(row, Collect(size.predictions, measure.value));
     }
     row.insert(row.end(),
@@ -163,7 +163,8 @@ Figure MakeSdfTimingFigure(const CsvTable& ours, const std::optional<CsvTable>& 
     }
   };
   add(kInit, "initialisation", kPublishedInit);
-  for (const Measure& measure : kMeasures) add(measure.name, measure.words, measure.published);
+  for (const TimedMeasure& measure : kTimedMeasures)
+    add(measure.name, measure.words, measure.published);
   return MakeSizeFigure("Cost of a field on one core", "ms", curves);
 }
 

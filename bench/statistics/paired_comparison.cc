@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <functional>
 #include <iterator>
 #include <map>
@@ -14,8 +13,6 @@
 namespace sidestep::bench {
 namespace {
 
-constexpr int kDraws = 2000;
-constexpr std::uint64_t kSeed = 1;
 constexpr double kSignificant = 0.05;
 
 std::vector<double> CostDifferences(const std::vector<PairedCase>& cases) {
@@ -96,7 +93,7 @@ Interval Bootstrap(const std::map<int, std::vector<PairedCase>>& by_cluster,
         }
         return statistic(drawn);
       },
-      kDraws, kSeed);
+      kBootstrapDraws, kBootstrapSeed);
 }
 
 }  // namespace

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <map>
 #include <utility>
 
@@ -13,16 +11,14 @@
 namespace sidestep::bench {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr int kMostDraws = 2000, kFewestDraws = 200;
 constexpr double kMostDrawnPairs = 2e7;
-constexpr std::uint64_t kSeed = 1;
 
 double Median(std::vector<double> values) { return Quantile(std::move(values), 0.5); }
 
 // The middle of many, by selection.
 double FastMedian(std::vector<double>& values) {
-  if (values.empty()) return kNone;
+  if (values.empty()) return kNaN;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   if (values.size() % 2 == 1) return *middle;
@@ -45,7 +41,7 @@ PairedMedians ComparePairedMedians(const std::vector<PairedNumber>& pairs) {
   medians.first = Median(first);
   medians.second = Median(second);
   medians.difference = Median(differences);
-  medians.interval = {kNone, kNone};
+  medians.interval = {kNaN, kNaN};
   if (by_cluster.size() < 2) return medians;
   std::vector<const std::vector<double>*> clusters;
   for (const auto& [name, values] : by_cluster) clusters.push_back(&values);
@@ -61,7 +57,8 @@ PairedMedians ComparePairedMedians(const std::vector<PairedNumber>& pairs) {
   const int draws =
       std::clamp(static_cast<int>(kMostDrawnPairs / static_cast<double>(pairs.size())),
                  kFewestDraws, kMostDraws);
-  medians.interval = BootstrapOverClusters(static_cast<int>(clusters.size()), median, draws, kSeed);
+  medians.interval =
+      BootstrapOverClusters(static_cast<int>(clusters.size()), median, draws, kBootstrapSeed);
   return medians;
 }
 

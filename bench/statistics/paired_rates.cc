@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstdlib>
 #include <limits>
 #include <map>
@@ -13,9 +12,7 @@
 namespace sidestep::bench {
 namespace {
 
-constexpr int kDraws = 2000;
-constexpr std::uint64_t kSeed = 1;
-constexpr double kMostSteps = 1e8;
+constexpr double kMostExactSteps = 1e8;
 
 struct Cluster {
   int pairs = 0, difference = 0;
@@ -30,7 +27,8 @@ Interval BootstrapInterval(const std::vector<Cluster>& clusters) {
     }
     return sum / pairs;
   };
-  return BootstrapOverClusters(static_cast<int>(clusters.size()), difference, kDraws, kSeed);
+  return BootstrapOverClusters(static_cast<int>(clusters.size()), difference, kBootstrapDraws,
+                               kBootstrapSeed);
 }
 
 }  // namespace
@@ -74,7 +72,7 @@ double SignFlipP(const std::vector<int>& differences) {
   }
   observed = std::abs(observed);
   if (observed == 0) return 1;
-  if (static_cast<double>(total) * static_cast<double>(steps.size()) > kMostSteps) {
+  if (static_cast<double>(total) * static_cast<double>(steps.size()) > kMostExactSteps) {
     return std::erfc(observed / std::sqrt(2 * squares));
   }
   // How likely the sum of the positive ones is s: the sum of all is 2 s - total.

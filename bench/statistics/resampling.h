@@ -8,6 +8,10 @@
 
 namespace sidestep::bench {
 
+/// What comparisons of pairs draw, and from which seed.
+inline constexpr int kBootstrapDraws = 2000;
+inline constexpr std::uint64_t kBootstrapSeed = 1;
+
 /// Percentile bootstrap over clusters: rows that belong together (all speeds of a start and goal)
 /// are drawn together, because they are not independent. Deterministic for a seed.
 /// @param statistic of a drawn sample of clusters, given by their indices, repeats included. Draws

@@ -8,11 +8,9 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
-#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <system_error>
@@ -27,8 +25,6 @@
 namespace sidestep::bench {
 namespace {
 
-using nlohmann::json;
-
 // A line is CHECK, tab, KEY or kSession, tab, text; JSON holds no tab.
 constexpr const char* kFormat = "sidestep-shard-1";
 constexpr const char* kSession = "session";
@@ -40,11 +36,6 @@ std::string CheckOf(const std::string& text) {
   Fingerprint check;
   check.Add(text);
   return check.Text();
-}
-
-json NumberOrNull(double value) { return std::isfinite(value) ? json(value) : json(); }
-double NumberOrNaN(const json& value) {
-  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
 }
 
 std::string SessionText(const ShardMaker& maker,
@@ -93,10 +84,11 @@ bool IsLocked(const std::string& path) {
 }  // namespace
 
 std::string RowText(const RunRow& row) {
-  json metrics = json::array();
+  nlohmann::ordered_json metrics = nlohmann::ordered_json::array();
   for (const Metric& metric : Metrics()) {
     const auto found = row.metrics.find(metric.name);
-    metrics.push_back(found == row.metrics.end() ? json() : NumberOrNull(found->second));
+    metrics.push_back(found == row.metrics.end() ? nlohmann::ordered_json()
+                                                 : NumberOrNull(found->second));
   }
   if (row.metrics.empty()) metrics.clear();
   const RunSubject& subject = row.subject;
@@ -129,27 +121,27 @@ RunRow RowFromText(const std::string& text, const std::string& build, const std:
   RunRow row;
   try {
     const std::size_t tab = text.find('\t');
-    const json same = json::parse(text.substr(0, tab));
+    const nlohmann::json same = nlohmann::json::parse(text.substr(0, tab));
     same.at("o").get_to(row.outcome);
     same.at("e").get_to(row.error);
     same.at("t").get_to(row.touched);
     same.at("d").get_to(row.drawn);
-    const json& metrics = same.at("m");
+    const nlohmann::json& metrics = same.at("m");
     std::size_t i = 0;
     for (const Metric& metric : Metrics()) {
       if (!metrics.empty()) row.metrics[metric.name] = NumberOrNaN(metrics.at(i++));
     }
-    const json& identity = same.at("i");
+    const nlohmann::json& identity = same.at("i");
     row.identity = {identity.at(0), identity.at(1), same.at("r").get<bool>() ? build : "",
                     identity.at(2)};
-    const json& subject = same.at("s");
+    const nlohmann::json& subject = same.at("s");
     row.subject = {subject.at(0), subject.at(1), subject.at(2), subject.at(3),
                    NumberOrNaN(subject.at(4))};
-    const json times = json::parse(text.substr(tab + 1));
+    const nlohmann::json times = nlohmann::json::parse(text.substr(tab + 1));
     row.clock = {NumberOrNaN(times.at(0)), NumberOrNaN(times.at(1)), NumberOrNaN(times.at(2)),
                  NumberOrNaN(times.at(3)), NumberOrNaN(times.at(4)), times.at(5).get<int>(),
                  times.at(6).get<int>()};
-  } catch (const json::exception&) {
+  } catch (const nlohmann::json::exception&) {
     throw InputError(place, "is no row of this version of sidestep");
   }
   if (row.outcome != kFailed && !OutcomeFromString(row.outcome)) {
@@ -244,9 +236,9 @@ ShardReading ReadShard(const std::string& path,
     const std::optional<std::uint64_t> key = KeyFromText(head);
     if (tab != std::string::npos && head == kSession) {
       try {
-        const json begun = json::parse(text->substr(tab + 1));
+        const nlohmann::json begun = nlohmann::json::parse(text->substr(tab + 1));
         session = {{begun.at("build"), begun.at("inputs")}, begun.at("machine")};
-      } catch (const json::exception&) {
+      } catch (const nlohmann::json::exception&) {
         throw InputError(place, "is no session of this version of sidestep");
       }
     } else if (tab != std::string::npos && key && session) {

@@ -23,7 +23,7 @@ namespace sidestep::bench {
 namespace {
 
 constexpr std::uintmax_t kMaxBytes = 1 << 20;
-constexpr double kMostValues = 100'000;  // of an axis
+constexpr double kMostAxisValues = 100'000;  // of an axis
 constexpr std::uint64_t kMostSeeds = 10'000'000;
 constexpr std::uint64_t kLargestSeed = 2147483647;
 
@@ -117,7 +117,7 @@ class AxisReader {
     range.CheckNoUnknownKeys();
     const double count = std::floor((to - from) / step * (1 + 1e-12)) + 1;
     if (!(count >= 1)) range.Fail("to", "must not be below `from`");
-    if (count > kMostValues) range.Fail("step", "makes too many values");
+    if (count > kMostAxisValues) range.Fail("step", "makes too many values");
     std::vector<std::string> values;
     for (int i = 0; i < static_cast<int>(count); ++i) {
       values.push_back(ShortestText(std::stod(fmt::format("{:.12g}", from + i * step))));

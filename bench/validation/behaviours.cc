@@ -19,7 +19,7 @@ using Motions = std::vector<Motion>;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kShare = 0.95;         // of what is declared: what is measured of it errs
 constexpr double kBeginsClear_m = 0.2;  // from the arm at its start
-constexpr int kMostDraws = 200;
+constexpr int kMostTries = 200;
 
 Vector3d StartOf(const Course& course, const Vector3d& direction, double speed_m_s) {
   const double way_m = std::max(course.least_way_m, speed_m_s * course.meets_after_s);
@@ -190,7 +190,7 @@ void SetBehaviour(const std::string& name, double speed_m_s, std::uint64_t seed,
   const Behaviour& behaviour = BehaviourOf(name);
   RandomStream random(seed, "validation course " + name);
   const scenarios::Scenario as_it_was = scenario;
-  for (int draw = 0; draw < kMostDraws; ++draw) {
+  for (int draw = 0; draw < kMostTries; ++draw) {
     scenario.moving_obstacles = as_it_was.moving_obstacles;
     Course course = DrawCourse(as_it_was, robot, random);
     // What is slow may have to come from further off, and what stands may have to stand further.

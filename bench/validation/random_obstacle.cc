@@ -8,7 +8,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kNever = 1e9;
+constexpr double kLongAfter_s = 1e9;
 
 // Comes from all sides, through where the arm works.
 scenarios::Motion RandomMotion(const ObstacleRange& range, RandomStream& random) {
@@ -20,7 +20,7 @@ scenarios::Motion RandomMotion(const ObstacleRange& range, RandomStream& random)
   const double speed_m_s = random.Uniform(range.least_m_s, range.most_m_s);
   switch (random.Bits() % 3) {
     case 0:
-      return scenarios::LinearMotion{start_m, direction, speed_m_s, kNever, 0};
+      return scenarios::LinearMotion{start_m, direction, speed_m_s, kLongAfter_s, 0};
     case 1:
       return scenarios::AcceleratedMotion{start_m,
                                           direction,
@@ -28,7 +28,7 @@ scenarios::Motion RandomMotion(const ObstacleRange& range, RandomStream& random)
                                           random.Uniform(-range.most_m_s2, range.most_m_s2),
                                           random.Uniform(0, 5),
                                           range.most_m_s,
-                                          kNever,
+                                          kLongAfter_s,
                                           0};
     default: {
       const double least_m = speed_m_s * speed_m_s / range.most_m_s2;
@@ -38,7 +38,7 @@ scenarios::Motion RandomMotion(const ObstacleRange& range, RandomStream& random)
                                      random.Uniform(-1.5, 1.5),
                                      random.Bits() % 2 == 0,
                                      speed_m_s,
-                                     kNever,
+                                     kLongAfter_s,
                                      0};
     }
   }

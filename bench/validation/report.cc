@@ -40,7 +40,7 @@ constexpr const char* kNotCertified =
     "robot's own monitoring conforms with no safety norm. The external activation device is no "
     "emergency stop. Nobody is within reach of the arm, ever.";
 
-const RunRow* RowOf(const std::string& name, const std::vector<RunRow>& rows) {
+const RunRow* FindRow(const std::string& name, const std::vector<RunRow>& rows) {
   const auto found = std::find_if(rows.begin(), rows.end(),
                                   [&](const RunRow& row) { return NameOf(row) == name; });
   return found == rows.end() ? nullptr : &*found;
@@ -72,7 +72,7 @@ std::string WorstCases(const std::vector<JudgedItem>& items, const std::vector<R
     text += fmt::format("\n**{}. {}**, {}\n\n", item.number, item.name, what);
     for (const NamedCase& one : finding.worst) {
       text += fmt::format("- `{}`: {}\n", one.name, TableCell(one.what));
-      const RunRow* const row = RowOf(one.name, rows);
+      const RunRow* const row = FindRow(one.name, rows);
       if (row != nullptr) text += fmt::format("\n      {}\n\n", row->command);
     }
   }
@@ -146,7 +146,7 @@ std::string ValidationJson(const ValidationTitle& title, const std::vector<Judge
   for (const auto& [item, finding] : items) {
     Json worst = Json::array();
     for (const NamedCase& one : finding.worst) {
-      const RunRow* const row = RowOf(one.name, rows);
+      const RunRow* const row = FindRow(one.name, rows);
       worst.push_back({{"case", one.name},
                        {"what", one.what},
                        {"command", row == nullptr ? Json(nullptr) : Json(row->command)}});

@@ -31,8 +31,12 @@ bool IsWithinEnvelope(const RunRow& row) {
   return false;
 }
 
+bool IsEnvelopeOrSoak(const RunRow& row) {
+  return IsOfGroup(row, validation_group::kEnvelope) || IsOfGroup(row, validation_group::kSoak);
+}
+
 std::vector<Told> LargestFirst(const Evidence& evidence, const std::string& fact,
-                               const RowFilter& filter) {
+                               const RowTest& filter) {
   std::vector<Told> told;
   for (const RunRow& row : evidence.rows) {
     const auto found = row.metrics.find(fact);

@@ -17,8 +17,9 @@ std::string NameOf(const RunRow& row);
 /// Whether a row's obstacles keep to what is declared, nothing fails, and the arm is supervised.
 bool IsWithinEnvelope(const RunRow& row);
 bool IsOfGroup(const RunRow& row, const char* group);
+bool IsEnvelopeOrSoak(const RunRow& row);
 
-using RowFilter = std::function<bool(const RunRow&)>;
+using RowTest = std::function<bool(const RunRow&)>;
 
 /// A row and what it tells of one fact.
 struct Told {
@@ -27,7 +28,7 @@ struct Told {
 };
 /// Of the rows that have it, those with the largest value first.
 std::vector<Told> LargestFirst(const Evidence& evidence, const std::string& fact,
-                               const RowFilter& filter);
+                               const RowTest& filter);
 /// The sum over those rows.
 double SumOf(const std::vector<Told>& told);
 

@@ -37,7 +37,7 @@ void Append(const Eigen::Vector3d& p, std::vector<float>* values) {
   for (const double x : p) values->push_back(static_cast<float>(x));
 }
 
-std::string Points(const Eigen::Matrix3Xd& points) {
+std::string PointFloats(const Eigen::Matrix3Xd& points) {
   std::vector<float> values;
   for (Eigen::Index i = 0; i < points.cols(); ++i) Append(points.col(i), &values);
   return Floats(values);
@@ -160,7 +160,7 @@ Json MotionJson(const Replay& replay) {
   Json plans = Json::array(), predictions = Json::array();
   for (const ReplayPlan& plan : replay.plans) {
     plans.push_back(
-        {{"effect_s", plan.effect_s}, {"step_s", plan.step_s}, {"path", Points(plan.p_WTip)}});
+        {{"effect_s", plan.effect_s}, {"step_s", plan.step_s}, {"path", PointFloats(plan.p_WTip)}});
   }
   for (const ReplayPrediction& prediction : replay.predictions) {
     predictions.push_back({{"effect_s", prediction.effect_s},
@@ -168,7 +168,7 @@ Json MotionJson(const Replay& replay) {
                            {"t", Floats(prediction.t_s)},
                            {"poses", Poses(prediction.X_WO)}});
   }
-  return {{"trail", {{"step_s", replay.trail_step_s}, {"path", Points(replay.p_WTrail)}}},
+  return {{"trail", {{"step_s", replay.trail_step_s}, {"path", PointFloats(replay.p_WTrail)}}},
           {"plans", plans},
           {"predictions", predictions}};
 }

@@ -121,7 +121,7 @@ Eigen::Index StrideFor(Eigen::Index count, Eigen::Index most) {
 }
 
 // Every stride-th column and the last one.
-Eigen::Matrix3Xd Thinned(const Eigen::Matrix3Xd& points, Eigen::Index stride) {
+Eigen::Matrix3Xd EveryNth(const Eigen::Matrix3Xd& points, Eigen::Index stride) {
   if (points.cols() == 0) return points;
   const Eigen::Index count = (points.cols() - 1 + stride - 1) / stride + 1;
   Eigen::Matrix3Xd thinned(3, count);
@@ -163,13 +163,13 @@ void AddPaths(TraceModel& trace, Replay* replay) {
   const record::Recording& recording = trace.recording();
   const Eigen::Matrix3Xd trail = trace.TipTrail(record::EndOf(recording));
   const Eigen::Index stride = StrideFor(trail.cols(), kMostTrailPoints);
-  replay->p_WTrail = Thinned(trail, stride);
+  replay->p_WTrail = EveryNth(trail, stride);
   replay->trail_step_s = TraceModel::kTrailStep_s * static_cast<double>(stride);
   for (const CycleRecord& cycle : recording.cycles) {
     if (!cycle.accepted || cycle.plan.num_states() == 0) continue;
     const Eigen::Matrix3Xd path = trace.TipPlan(cycle, cycle.t_effect);
     const Eigen::Index every = std::lround(kPathStep_s / TraceModel::kPlanStep_s);
-    replay->plans.push_back({cycle.t_effect.seconds(), kPathStep_s, Thinned(path, every)});
+    replay->plans.push_back({cycle.t_effect.seconds(), kPathStep_s, EveryNth(path, every)});
     for (const PredictedObject& object : cycle.objects) {
       if (object.X_WO.empty()) continue;
       ReplayPrediction& prediction = replay->predictions.emplace_back();

@@ -11,13 +11,13 @@
 namespace sidestep::sdf {
 namespace {
 
-struct Word {
+struct UnseenWord {
   UnseenSpace unseen;
   const char* word;
 };
-constexpr Word kWords[] = {{UnseenSpace::kFree, "free"},
-                           {UnseenSpace::kFilled, "filled"},
-                           {UnseenSpace::kRemembered, "remembered"}};
+constexpr UnseenWord kUnseenWords[] = {{UnseenSpace::kFree, "free"},
+                                       {UnseenSpace::kFilled, "filled"},
+                                       {UnseenSpace::kRemembered, "remembered"}};
 
 // What the rays of a scan say of a cell, together.
 constexpr std::uint8_t kPassed = 1, kHit = 2, kDoubted = 4, kRests = 8;
@@ -40,14 +40,14 @@ std::size_t IndexOf(const GridSpec& grid, const Eigen::Vector3d& p_W) {
 }  // namespace
 
 std::string ToString(UnseenSpace unseen) {
-  for (const Word& entry : kWords) {
+  for (const UnseenWord& entry : kUnseenWords) {
     if (entry.unseen == unseen) return entry.word;
   }
   throw std::invalid_argument("not a kind of unseen space");
 }
 
 UnseenSpace UnseenSpaceFromString(const std::string& word) {
-  for (const Word& entry : kWords) {
+  for (const UnseenWord& entry : kUnseenWords) {
     if (entry.word == word) return entry.unseen;
   }
   throw std::invalid_argument("unknown unseen space '" + word +

@@ -30,39 +30,6 @@ constexpr std::size_t kCachedBytes = std::size_t{16} << 20;
 
 std::size_t DivideUp(std::size_t a, std::size_t b) { return (a + b - 1) / b; }
 
-struct AlignedDelete {
-  std::align_val_t alignment{kColumnBytes};
-  void operator()(void* memory) const { ::operator delete(memory, alignment); }
-};
-
-// Memory that grows, and is never initialised.
-class Buffer {
- public:
-  template <class T>
-  T* Get(std::size_t count) {
-    Reserve(count * sizeof(T));
-    return static_cast<T*>(data_.get());
-  }
-
- private:
-  void Reserve(std::size_t bytes) {
-    if (bytes <= capacity_) return;
-    // The step from plane to plane leaves a small page each time, so large ones matter.
-    constexpr std::size_t kLargePage = std::size_t{1} << 21;
-    const std::size_t alignment = bytes < kLargePage ? kColumnBytes : kLargePage;
-    const std::size_t size = DivideUp(bytes, alignment) * alignment;
-    capacity_ = 0;
-    data_.reset();
-    const std::align_val_t align{alignment};
-    data_ = {::operator new(size, align), AlignedDelete{align}};
-    if (alignment == kLargePage) madvise(data_.get(), size, MADV_HUGEPAGE);
-    capacity_ = size;
-  }
-
-  std::unique_ptr<void, AlignedDelete> data_;
-  std::size_t capacity_ = 0;
-};
-
 float ToDistance_m(std::uint32_t squared_half_cells, double cell_m) {
   return static_cast<float>(cell_m / 2 * std::sqrt(static_cast<float>(squared_half_cells)));
 }
@@ -111,6 +78,39 @@ class FastDistanceTransform::Workspace {
            float* distance_m);
 
  private:
+  // Memory that grows, and is never initialised.
+  class Buffer {
+   public:
+    template <class T>
+    T* Get(std::size_t count) {
+      Reserve(count * sizeof(T));
+      return static_cast<T*>(data_.get());
+    }
+
+   private:
+    struct AlignedDelete {
+      std::align_val_t alignment;
+      void operator()(void* memory) const { ::operator delete(memory, alignment); }
+    };
+
+    void Reserve(std::size_t bytes) {
+      if (bytes <= capacity_) return;
+      // The step from plane to plane leaves a small page each time, so large ones matter.
+      constexpr std::size_t kLargePage = std::size_t{1} << 21;
+      const std::size_t alignment = bytes < kLargePage ? kColumnBytes : kLargePage;
+      const std::size_t size = DivideUp(bytes, alignment) * alignment;
+      capacity_ = 0;
+      data_.reset();
+      const std::align_val_t align{alignment};
+      data_ = {::operator new(size, align), AlignedDelete{align}};
+      if (alignment == kLargePage) madvise(data_.get(), size, MADV_HUGEPAGE);
+      capacity_ = size;
+    }
+
+    std::unique_ptr<void, AlignedDelete> data_;
+    std::size_t capacity_ = 0;
+  };
+
   template <class Lane>
   void FillCostTables(std::uint32_t far, Job<Lane>& job);
   template <class Lane>

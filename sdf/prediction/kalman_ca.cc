@@ -5,7 +5,7 @@ namespace {
 
 constexpr double kCaNoise = 4;  // m^2/s^5
 
-MotionVector Move(const MotionVector& x, double dt_s, MotionMatrix* F) {
+MotionVector MoveAccelerating(const MotionVector& x, double dt_s, MotionMatrix* F) {
   MotionVector moved = x;
   moved.segment<3>(kP) += dt_s * x.segment<3>(kV) + dt_s * dt_s / 2 * x.segment<3>(kA);
   moved.segment<3>(kV) += dt_s * x.segment<3>(kA);
@@ -20,7 +20,7 @@ MotionVector Move(const MotionVector& x, double dt_s, MotionMatrix* F) {
   return moved;
 }
 
-MotionMatrix Noise(double dt_s) {
+MotionMatrix AcceleratingNoise(double dt_s) {
   const double dt2 = dt_s * dt_s;
   MotionMatrix Q = MotionMatrix::Zero();
   for (int axis = 0; axis < 3; ++axis) {
@@ -38,7 +38,7 @@ MotionMatrix Noise(double dt_s) {
 
 }  // namespace
 
-const MotionModel kConstantAcceleration = {&Move, &Noise};
+const MotionModel kConstantAcceleration = {&MoveAccelerating, &AcceleratingNoise};
 
 std::unique_ptr<ObstaclePredictor> MakeKalmanCaPredictor() {
   return MakeFilterPredictor(kConstantAcceleration);

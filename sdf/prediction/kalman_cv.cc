@@ -5,7 +5,7 @@ namespace {
 
 constexpr double kCvNoise = 0.1;  // m^2/s^3
 
-MotionVector Move(const MotionVector& x, double dt_s, MotionMatrix* F) {
+MotionVector MoveSteadily(const MotionVector& x, double dt_s, MotionMatrix* F) {
   MotionVector moved = MotionVector::Zero();
   moved.segment<3>(kP) = x.segment<3>(kP) + dt_s * x.segment<3>(kV);
   moved.segment<3>(kV) = x.segment<3>(kV);
@@ -17,7 +17,7 @@ MotionVector Move(const MotionVector& x, double dt_s, MotionMatrix* F) {
   return moved;
 }
 
-MotionMatrix Noise(double dt_s) {
+MotionMatrix SteadyNoise(double dt_s) {
   MotionMatrix Q = MotionMatrix::Zero();
   for (int axis = 0; axis < 3; ++axis) {
     const int p = kP + axis, v = kV + axis;
@@ -32,7 +32,7 @@ MotionMatrix Noise(double dt_s) {
 
 }  // namespace
 
-const MotionModel kConstantVelocity = {&Move, &Noise};
+const MotionModel kConstantVelocity = {&MoveSteadily, &SteadyNoise};
 
 std::unique_ptr<ObstaclePredictor> MakeKalmanCvPredictor() {
   return MakeFilterPredictor(kConstantVelocity);

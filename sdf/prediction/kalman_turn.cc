@@ -9,7 +9,7 @@ constexpr double kSpeedNoise = 0.1;  // m^2/s^3, of each axis of the velocity
 constexpr double kTurnNoise = 0.3;   // rad^2/s^3, of the rate of turn
 constexpr double kSmallAngle = 1e-4;
 
-MotionVector Move(const MotionVector& x, double dt_s, MotionMatrix* F) {
+MotionVector MoveTurning(const MotionVector& x, double dt_s, MotionMatrix* F) {
   const double w = x(kTurn), angle = w * dt_s;
   const double sine = std::sin(angle), cosine = std::cos(angle);
   const bool small = std::abs(angle) < kSmallAngle;
@@ -44,7 +44,7 @@ MotionVector Move(const MotionVector& x, double dt_s, MotionMatrix* F) {
   return moved;
 }
 
-MotionMatrix Noise(double dt_s) {
+MotionMatrix TurningNoise(double dt_s) {
   MotionMatrix Q = MotionMatrix::Zero();
   for (int axis = 0; axis < 3; ++axis) {
     const int p = kP + axis, v = kV + axis;
@@ -59,7 +59,7 @@ MotionMatrix Noise(double dt_s) {
 
 }  // namespace
 
-const MotionModel kCoordinatedTurn = {&Move, &Noise};
+const MotionModel kCoordinatedTurn = {&MoveTurning, &TurningNoise};
 
 std::unique_ptr<ObstaclePredictor> MakeKalmanTurnPredictor() {
   return MakeFilterPredictor(kCoordinatedTurn);

@@ -10,12 +10,6 @@ namespace status = robot::fci::status;
 using robot::fci::FromBytes;
 using robot::fci::Request;
 
-template <typename Values>
-bool AllFinite(const Values& values) {
-  return std::all_of(values.begin(), values.end(),
-                     [](double value) { return std::isfinite(value); });
-}
-
 // False for NaN too.
 template <typename Values>
 bool AllWithin(const Values& values, double least, double most) {
@@ -39,6 +33,11 @@ bool IsValid(const robot::fci::LoadRequest& request) {
 }
 
 }  // namespace
+
+bool AllFinite(std::span<const double> values) {
+  return std::all_of(values.begin(), values.end(),
+                     [](double value) { return std::isfinite(value); });
+}
 
 std::uint8_t Apply(const robot::fci::Message& request, PandaSettings& settings) {
   switch (request.request) {

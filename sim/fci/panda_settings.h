@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "sidestep/robot/fci/wire.h"
 #include "sidestep/sim/fci/controller.h"
@@ -16,6 +17,9 @@ struct PandaSettings {
   robot::fci::Matrix4 NE_T_EE = Identity4(), EE_T_K = Identity4();
   robot::fci::LoadRequest load{};
 };
+
+/// Whether there is no NaN and no infinity among what a client sent.
+bool AllFinite(std::span<const double> values);
 
 /// Takes what a setter wants, if its values make sense; else nothing is changed.
 /// @param request one of the Set... requests, its payload of the right size.

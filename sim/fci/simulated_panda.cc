@@ -26,12 +26,6 @@ constexpr double kMeasuredSpeed = 1.1;  // times its limit: a joint that only la
 
 constexpr double kElbowFlip_rad = -0.467002423653011;  // of joint 4. Source: franka_ros
 
-template <typename Values>
-bool AllFinite(const Values& values) {
-  return std::all_of(values.begin(), values.end(),
-                     [](double value) { return std::isfinite(value); });
-}
-
 std::array<double, 2> Elbow(const Joints& q) { return {q[2], q[3] < kElbowFlip_rad ? -1.0 : 1.0}; }
 
 std::array<std::uint8_t, robot::fci::kNumErrors> Flags(const ErrorSet& errors) {

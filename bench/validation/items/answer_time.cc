@@ -4,7 +4,7 @@
 namespace sidestep::bench {
 namespace {
 
-ItemFinding Judge(const Evidence&) {
+ItemFinding JudgeAnswerTime(const Evidence&) {
   return NothingRun(
       "it is of the machine in the laboratory: communication_test of libfranka, then `sidestep "
       "hardware run` for 10 min, which tells it in result.json under wall_clock.answers");
@@ -19,7 +19,7 @@ ValidationItem AnswerTimeItem() {
           "the laboratory",
           "Franka's documentation; libfranka's communication_test",
           nullptr,
-          Judge};
+          JudgeAnswerTime};
 }
 
 }  // namespace sidestep::bench

@@ -4,7 +4,7 @@
 namespace sidestep::bench {
 namespace {
 
-ItemFinding Judge(const Evidence&) {
+ItemFinding JudgeCalibration(const Evidence&) {
   return NothingRun(
       "it is of the camera in the laboratory: calibrate it there, and keep some poses out to judge "
       "the result by");
@@ -18,7 +18,7 @@ ValidationItem CalibrationItem() {
           "5 mm and 0.5 degrees (rms) in poses kept out of it",
           "common practice of eye-to-hand calibration",
           nullptr,
-          Judge};
+          JudgeCalibration};
 }
 
 }  // namespace sidestep::bench

@@ -11,7 +11,7 @@
 namespace sidestep::bench {
 namespace {
 
-constexpr double kNear_m = 0.05, kMostNear = 0.01, kCalibration_m = 0.01, kSigmas = 2;
+constexpr double kNear_m = 0.05, kMostNear = 0.01, kCalibration_m = 0.01, kSureSigmas = 2;
 
 // The standard deviation of where a scan says that things are, in its worst direction.
 double SigmaOf(const record::ObservationRecord& scan) {
@@ -24,7 +24,7 @@ double SigmaOf(const record::ObservationRecord& scan) {
   return std::sqrt(most_m2);
 }
 
-Facts Measure(const ValidationRun& run) {
+Facts MeasureClearance(const ValidationRun& run) {
   const record::Recording& recording = run.result.recording;
   if (recording.truth.empty()) return {};
   double least_m = std::numeric_limits<double>::infinity(), sure_m = least_m, sigma_m = 0;
@@ -38,7 +38,7 @@ Facts Measure(const ValidationRun& run) {
     if (tick == nullptr || !IsToldToMove(*tick)) continue;
     const double distance_m = DistanceToObstacles(run.scenario, run.robot, tick->q, sample.X_WO);
     least_m = std::min(least_m, distance_m);
-    sure_m = std::min(sure_m, distance_m - kSigmas * sigma_m - kCalibration_m);
+    sure_m = std::min(sure_m, distance_m - kSureSigmas * sigma_m - kCalibration_m);
     ++moving;
     near += distance_m < kNear_m ? 1 : 0;
   }
@@ -49,16 +49,13 @@ Facts Measure(const ValidationRun& run) {
           {"sure_lack_of_clearance_m", -sure_m}};
 }
 
-bool IsJudged(const RunRow& row) {
-  return IsOfGroup(row, validation_group::kEnvelope) || IsOfGroup(row, validation_group::kSoak);
-}
-
-ItemFinding Judge(const Evidence& evidence) {
-  const std::vector<Told> lack = LargestFirst(evidence, "lack_of_clearance_m", IsJudged);
-  const std::vector<Told> sure = LargestFirst(evidence, "sure_lack_of_clearance_m", IsJudged);
+ItemFinding JudgeClearance(const Evidence& evidence) {
+  const std::vector<Told> lack = LargestFirst(evidence, "lack_of_clearance_m", IsEnvelopeOrSoak);
+  const std::vector<Told> sure =
+      LargestFirst(evidence, "sure_lack_of_clearance_m", IsEnvelopeOrSoak);
   if (lack.empty()) return NothingRun("the arm never moved where its clearance is known");
-  const double moving = SumOf(LargestFirst(evidence, "samples_in_motion", IsJudged));
-  const double near = SumOf(LargestFirst(evidence, "samples_near", IsJudged));
+  const double moving = SumOf(LargestFirst(evidence, "samples_in_motion", IsEnvelopeOrSoak));
+  const double near = SumOf(LargestFirst(evidence, "samples_near", IsEnvelopeOrSoak));
   ItemFinding finding;
   const bool passes = near <= kMostNear * moving && sure.front().value < 0;
   finding.verdict = passes ? ItemVerdict::kPass : ItemVerdict::kFail;
@@ -82,8 +79,8 @@ ValidationItem ClearanceItem() {
           "1st percentile at least 50 mm; more than 0 less 2 sigma of perception and 10 mm of "
           "calibration",
           "capsules that cover the arm, true obstacles; noise of tags as published",
-          Measure,
-          Judge};
+          MeasureClearance,
+          JudgeClearance};
 }
 
 }  // namespace sidestep::bench

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kSameMoment_s = 2e-3;
 
-Facts Measure(const ValidationRun& run) {
+Facts MeasureContactInMotion(const ValidationRun& run) {
   const record::Recording& recording = run.result.recording;
   if (recording.truth.empty()) return {};
   bool in_motion = false, at_rest = false;
@@ -40,7 +40,7 @@ Facts Measure(const ValidationRun& run) {
   return facts;
 }
 
-ItemFinding Judge(const Evidence& evidence) {
+ItemFinding JudgeContactInMotion(const Evidence& evidence) {
   const auto is_beyond = [](const RunRow& row) {
     return IsOfGroup(row, validation_group::kSudden) || IsOfGroup(row, validation_group::kFast);
   };
@@ -80,8 +80,8 @@ ValidationItem ContactInMotionItem() {
           "contact of a moving arm",
           "none within the declared envelope; beyond it, told",
           "speed and separation monitoring: at rest before contact",
-          Measure,
-          Judge};
+          MeasureContactInMotion,
+          JudgeContactInMotion};
 }
 
 }  // namespace sidestep::bench

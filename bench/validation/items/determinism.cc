@@ -23,7 +23,7 @@ double HashOf(const record::Recording& recording) {
   return static_cast<double>(hash >> 12);
 }
 
-Facts Measure(const ValidationRun& run) {
+Facts MeasureDeterminism(const ValidationRun& run) {
   return {{"commands_hash", HashOf(run.result.recording)}};
 }
 
@@ -37,7 +37,7 @@ std::string Same(const RunRow& row) {
   return text;
 }
 
-ItemFinding Judge(const Evidence& evidence) {
+ItemFinding JudgeDeterminism(const Evidence& evidence) {
   std::map<std::string, double> hashes;
   for (const RunRow& row : evidence.rows) {
     if (!IsOfGroup(row, validation_group::kEnvelope)) continue;
@@ -71,8 +71,8 @@ ValidationItem DeterminismItem() {
           "determinism",
           "the same commands again, to the bit, in lock-step too",
           "what cannot be repeated cannot be understood",
-          Measure,
-          Judge};
+          MeasureDeterminism,
+          JudgeDeterminism};
 }
 
 }  // namespace sidestep::bench

@@ -17,7 +17,7 @@ bool HoldsAny(const std::string& text, std::string_view words) {
   return false;
 }
 
-Facts Measure(const ValidationRun& run) {
+Facts MeasureFaults(const ValidationRun& run) {
   if (run.one.group != validation_group::kFault) return {};
   const ValidationFault& fault = ValidationFaultOf(run.one.fault);
   const record::Recording& recording = run.result.recording;
@@ -32,7 +32,7 @@ Facts Measure(const ValidationRun& run) {
           {"fault_rests", rests || is_ended || fault.may_go_on ? 1 : 0}};
 }
 
-ItemFinding Judge(const Evidence& evidence) {
+ItemFinding JudgeFaults(const Evidence& evidence) {
   const auto is_fault = [](const RunRow& row) { return IsOfGroup(row, validation_group::kFault); };
   const std::vector<Told> answered = LargestFirst(evidence, "fault_answered", is_fault);
   const std::vector<Told> rests = LargestFirst(evidence, "fault_rests", is_fault);
@@ -61,8 +61,8 @@ ValidationItem FaultsItem() {
       "faults of sensor, network and robot",
       "each is answered as specified; the arm rests, and does not go on by itself after a fault",
       "the checks of docs/safety.md",
-      Measure,
-      Judge};
+      MeasureFaults,
+      JudgeFaults};
 }
 
 }  // namespace sidestep::bench

@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kCamera = "tag_images";
 constexpr double kInside = 7.815;  // 95 % of chi^2 with 3 degrees of freedom
-constexpr double kLeastShare = 0.90;
+constexpr double kLeastInsideShare = 0.90;
 
 // True poses at `t`, interpolated linearly between samples of 100 Hz.
 Eigen::Vector3d TruePosition(const record::Recording& recording, std::size_t obstacle,
@@ -28,7 +28,7 @@ Eigen::Vector3d TruePosition(const record::Recording& recording, std::size_t obs
   return (1 - share) * a.X_WO[obstacle].translation() + share * b.X_WO[obstacle].translation();
 }
 
-Facts Measure(const ValidationRun& run) {
+Facts MeasureFilter(const ValidationRun& run) {
   const record::Recording& recording = run.result.recording;
   if (run.scenario.sensor.name != kCamera || recording.truth.empty()) return {};
   double seen = 0, inside = 0;
@@ -50,7 +50,7 @@ Facts Measure(const ValidationRun& run) {
   return {{"poses_seen", seen}, {"poses_inside_95", inside}};
 }
 
-ItemFinding Judge(const Evidence& evidence) {
+ItemFinding JudgeFilter(const Evidence& evidence) {
   if (evidence.scenario.sensor.name != kCamera) {
     return NothingRun(
         "no camera in this scenario: errors of a noise model are as they are said to be");
@@ -63,7 +63,7 @@ ItemFinding Judge(const Evidence& evidence) {
   if (seen == 0) return NothingRun("the camera saw no tag");
   const double share = SumOf(told) / seen;
   ItemFinding finding;
-  finding.verdict = share >= kLeastShare ? ItemVerdict::kPass : ItemVerdict::kFail;
+  finding.verdict = share >= kLeastInsideShare ? ItemVerdict::kPass : ItemVerdict::kFail;
   finding.evidence = fmt::format(
       "{:.1f} % of {:.0f} poses that the camera told lie within its own 95 % of the truth",
       100 * share, seen);
@@ -77,8 +77,8 @@ ValidationItem FilterItem() {
           "consistency of what the camera says",
           "90 % of poses within the 95 % ellipsoid of their covariance",
           "chi-squared test of normalised errors",
-          Measure,
-          Judge};
+          MeasureFilter,
+          JudgeFilter};
 }
 
 }  // namespace sidestep::bench

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kRounding_rad = 1e-6;
 
-Facts Measure(const ValidationRun& run) {
+Facts MeasureJointMargin(const ValidationRun& run) {
   double least_rad = std::numeric_limits<double>::infinity();
   for (const ControlSample& tick : run.result.recording.control) {
     for (int j = 0; j < run.robot.num_joints(); ++j) {
@@ -23,7 +23,7 @@ Facts Measure(const ValidationRun& run) {
   return {{"joint_excess_rad", -least_rad}};  // the larger, the worse
 }
 
-ItemFinding Judge(const Evidence& evidence) {
+ItemFinding JudgeJointMargin(const Evidence& evidence) {
   const std::vector<Told> told = LargestFirst(evidence, "joint_excess_rad", [](const auto& row) {
     return !IsOfGroup(row, validation_group::kPrediction);
   });
@@ -46,8 +46,8 @@ ValidationItem JointMarginItem() {
           "distance from the ends of the joints",
           "at least 0.1 rad",
           "the warning of franka_ros (joint_limit_warning_threshold)",
-          Measure,
-          Judge};
+          MeasureJointMargin,
+          JudgeJointMargin};
 }
 
 }  // namespace sidestep::bench

@@ -19,23 +19,23 @@ constexpr Use kUses[] = {{"velocity_use", "velocity", 0.5},
 // Differences of sent positions are wrong by some 1e-15 rad, divided by 1e-9 s^3.
 constexpr double kRounding = 1e-6;
 
-Facts Measure(const ValidationRun& run) {
+Facts MeasureMotionLimits(const ValidationRun& run) {
   Facts facts;
   for (const Use& use : kUses) facts[use.metric] = run.result.recording.metrics.at(use.metric);
   return facts;
 }
 
 // Where packets are lost, the robot makes up what is missing, and that is not what was sent.
-bool IsJudged(const RunRow& row) {
+bool IsJudgedByLimits(const RunRow& row) {
   return !IsOfGroup(row, validation_group::kPrediction) &&
          !IsOfGroup(row, validation_group::kFault) &&
          !row.factors.at("timing").starts_with("loss_");
 }
 
-ItemFinding Judge(const Evidence& evidence) {
+ItemFinding JudgeMotionLimits(const Evidence& evidence) {
   ItemFinding finding{ItemVerdict::kPass, "", {}};
   for (const auto& [metric, what, most] : kUses) {
-    const std::vector<Told> told = LargestFirst(evidence, metric, IsJudged);
+    const std::vector<Told> told = LargestFirst(evidence, metric, IsJudgedByLimits);
     if (told.empty()) return NothingRun("the robot has no such limits");
     finding.evidence += fmt::format("{}{} {:.1f} %", finding.evidence.empty() ? "at most: " : ", ",
                                     what, 100 * told.front().value);
@@ -56,8 +56,8 @@ ValidationItem MotionLimitsItem() {
           "velocity, acceleration and jerk of what is sent",
           "at most 50 %, 50 % and 10 % of the robot's limits, by backward differences",
           "libfranka keeps three lost packets in reserve (rate_limiting.h)",
-          Measure,
-          Judge};
+          MeasureMotionLimits,
+          JudgeMotionLimits};
 }
 
 }  // namespace sidestep::bench

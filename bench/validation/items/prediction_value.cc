@@ -11,7 +11,7 @@
 namespace sidestep::bench {
 namespace {
 
-Facts Measure(const ValidationRun& run) {
+Facts MeasurePredictionValue(const ValidationRun& run) {
   if (run.one.group != validation_group::kPrediction) return {};
   const record::Recording& recording = run.result.recording;
   const std::map<std::string, double>& metrics = recording.metrics;
@@ -20,12 +20,12 @@ Facts Measure(const ValidationRun& run) {
           {"alone_clearance_m", metrics.at("min_clearance_m")}};
 }
 
-struct Pair {
+struct PredictionPair {
   const RunRow *with = nullptr, *without = nullptr;
 };
 
-std::map<std::string, Pair> PairsOf(const Evidence& evidence) {
-  std::map<std::string, Pair> pairs;
+std::map<std::string, PredictionPair> PredictionPairsOf(const Evidence& evidence) {
+  std::map<std::string, PredictionPair> pairs;
   for (const RunRow& row : evidence.rows) {
     if (!IsOfGroup(row, validation_group::kPrediction) || row.metrics.empty()) continue;
     const std::string same = row.factors.at("behaviour") + " " + row.factors.at("speed_m_s") + " " +
@@ -36,11 +36,11 @@ std::map<std::string, Pair> PairsOf(const Evidence& evidence) {
   return pairs;
 }
 
-ItemFinding Judge(const Evidence& evidence) {
+ItemFinding JudgePredictionValue(const Evidence& evidence) {
   int num_pairs = 0, free_with = 0, free_without = 0;
   std::vector<double> jerk_ratios, clearance_gains_m;
   ItemFinding finding;
-  for (const auto& [same, pair] : PairsOf(evidence)) {
+  for (const auto& [same, pair] : PredictionPairsOf(evidence)) {
     if (pair.with == nullptr || pair.without == nullptr) continue;
     ++num_pairs;
     const auto fact = [](const RunRow* row, const char* name) { return row->metrics.at(name); };
@@ -83,8 +83,8 @@ ValidationItem PredictionValueItem() {
           "as many goals, as much clearance and no more squared jerk than planning on the world as "
           "it is now",
           "the claim of Finean, Merkt & Havoutis, ICAPS 2021",
-          Measure,
-          Judge};
+          MeasurePredictionValue,
+          JudgePredictionValue};
 }
 
 }  // namespace sidestep::bench

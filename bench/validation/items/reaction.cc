@@ -9,7 +9,7 @@
 namespace sidestep::bench {
 namespace {
 
-constexpr double kMost50_s = 0.20, kMost99_s = 0.30, kMost_s = 0.5;
+constexpr double kMost50_s = 0.20, kMost99_s = 0.30, kMostReaction_s = 0.5;
 
 // From the capture of the newest scan that a cycle knew to the moment at which its plan took
 // effect.
@@ -27,7 +27,7 @@ std::vector<double> Reactions(const record::Recording& recording) {
   return reactions_s;
 }
 
-Facts Measure(const ValidationRun& run) {
+Facts MeasureReaction(const ValidationRun& run) {
   const std::vector<double> reactions_s = Reactions(run.result.recording);
   if (reactions_s.empty()) return {};
   return {{"reaction_p50_s", Quantile(reactions_s, 0.5)},
@@ -35,7 +35,7 @@ Facts Measure(const ValidationRun& run) {
           {"reaction_max_s", Quantile(reactions_s, 1)}};
 }
 
-ItemFinding Judge(const Evidence& evidence) {
+ItemFinding JudgeReaction(const Evidence& evidence) {
   const auto is_nominal = [](const RunRow& row) {
     return IsOfGroup(row, validation_group::kEnvelope);
   };
@@ -45,12 +45,12 @@ ItemFinding Judge(const Evidence& evidence) {
   if (p50.empty()) return NothingRun("no plan was ever accepted");
   ItemFinding finding;
   const bool passes = p50.front().value <= kMost50_s && p99.front().value <= kMost99_s &&
-                      most.front().value <= kMost_s;
+                      most.front().value <= kMostReaction_s;
   finding.verdict = passes ? ItemVerdict::kPass : ItemVerdict::kFail;
   finding.evidence =
       fmt::format("in the worst episode: median {:.3f} s, 99 % {:.3f} s, most {:.3f} s",
                   p50.front().value, p99.front().value, most.front().value);
-  finding.worst = WorstOf(most, kMost_s, "{:.3f} s at most");
+  finding.worst = WorstOf(most, kMostReaction_s, "{:.3f} s at most");
   return finding;
 }
 
@@ -61,8 +61,8 @@ ValidationItem ReactionItem() {
           "from capture to a changed plan",
           "median 0.20 s, 99 % 0.30 s, at most 0.5 s",
           "budget: 60 ms camera, a frame of waiting, 100 ms planning",
-          Measure,
-          Judge};
+          MeasureReaction,
+          JudgeReaction};
 }
 
 }  // namespace sidestep::bench

@@ -10,18 +10,18 @@ namespace sidestep::bench {
 namespace {
 
 constexpr double kMostPeriods = 2;
-constexpr double kStill_rad_s = 0.05;
+constexpr double kResting_rad_s = 0.05;
 
 // Who is made to brake, or is pushed, waits until he rests before he plans anew.
 bool ComesToRest(const record::Recording& recording, EpisodeTime from, EpisodeTime to) {
   const ControlSample *const first = TickAt(recording, from), *const last = TickAt(recording, to);
-  if (first == nullptr || last->v_command.norm() >= kStill_rad_s) return false;
+  if (first == nullptr || last->v_command.norm() >= kResting_rad_s) return false;
   return std::any_of(first, last + 1, [](const ControlSample& tick) {
     return IsToldToMove(tick) || IsMoving(tick.v);
   });
 }
 
-Facts Measure(const ValidationRun& run) {
+Facts MeasureReplanPeriod(const ValidationRun& run) {
   const std::vector<CycleRecord>& cycles = run.result.recording.cycles;
   std::vector<double> periods;
   for (std::size_t i = 1; i < cycles.size(); ++i) {
@@ -33,7 +33,7 @@ Facts Measure(const ValidationRun& run) {
   return {{"replan_periods_p99", Quantile(periods, 0.99)}};
 }
 
-ItemFinding Judge(const Evidence& evidence) {
+ItemFinding JudgeReplanPeriod(const Evidence& evidence) {
   const auto is_nominal = [](const RunRow& row) {
     return IsOfGroup(row, validation_group::kEnvelope);
   };
@@ -62,8 +62,8 @@ ValidationItem ReplanPeriodItem() {
           "planning rate",
           "99 % of periods at most twice the nominal one; a late planner leads to no contact",
           "every plan ends at rest, so that one that is not renewed stops by itself",
-          Measure,
-          Judge};
+          MeasureReplanPeriod,
+          JudgeReplanPeriod};
 }
 
 }  // namespace sidestep::bench

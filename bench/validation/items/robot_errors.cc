@@ -9,7 +9,7 @@ namespace {
 // A brake of the supervisor's ends an episode as well; the loop says of it that the robot stopped.
 constexpr const char* kSupervised = "the robot stopped: ";
 
-Facts Measure(const ValidationRun& run) {
+Facts MeasureRobotErrors(const ValidationRun& run) {
   if (!run.one.on_the_wire) return {};
   const bool failed =
       run.result.outcome == Outcome::kAborted && !run.result.reason.starts_with(kSupervised);
@@ -20,7 +20,7 @@ bool IsNominal(const RunRow& row) {
   return IsOfGroup(row, validation_group::kEnvelope) || IsOfGroup(row, validation_group::kTiming);
 }
 
-ItemFinding Judge(const Evidence& evidence) {
+ItemFinding JudgeRobotErrors(const Evidence& evidence) {
   const std::vector<Told> told = LargestFirst(evidence, "robot_errors", IsNominal);
   if (told.empty()) {
     return NothingRun("no episode was run at the robot server, which simulates a panda alone");
@@ -45,8 +45,8 @@ ValidationItem RobotErrorsItem() {
           "errors of the robot",
           "none, where nothing fails",
           "Franka's documentation: the necessary conditions of a motion",
-          Measure,
-          Judge};
+          MeasureRobotErrors,
+          JudgeRobotErrors};
 }
 
 }  // namespace sidestep::bench

@@ -10,7 +10,7 @@
 namespace sidestep::bench {
 namespace {
 
-constexpr double kMostShare = 0.01, kAnswer_s = 0.05, kStep_s = 1e-3, kMemory_s = 2;
+constexpr double kMostShare = 0.01, kAnswer_s = 0.05, kClosingStep_s = 1e-3, kMemory_s = 2;
 
 std::vector<Pose> Shifted(const std::vector<Pose>& X_WO, const std::vector<Pose>& before,
                           double share) {
@@ -30,7 +30,7 @@ bool IsAnswered(const record::Recording& recording, double t_s) {
   });
 }
 
-Facts Measure(const ValidationRun& run) {
+Facts MeasureSeparation(const ValidationRun& run) {
   const record::Recording& recording = run.result.recording;
   if (recording.truth.size() < 2 || !run.one.is_supervised) return {};
   const control::JerkLimitedTracker tracker = LabTracker(run.robot);
@@ -51,11 +51,13 @@ Facts Measure(const ValidationRun& run) {
     const double d_m = distance_m(tick->q, sample.X_WO);
     const StopFrom stop = StopOf(tracker, *tick);
     Separation separation;
-    const auto closing_m_s = [&](double then_m) { return std::max(0.0, (d_m - then_m) / kStep_s); };
+    const auto closing_m_s = [&](double then_m) {
+      return std::max(0.0, (d_m - then_m) / kClosingStep_s);
+    };
     separation.obstacle_m_s =
-        closing_m_s(distance_m(tick->q, Shifted(sample.X_WO, before.X_WO, kStep_s / dt_s)));
+        closing_m_s(distance_m(tick->q, Shifted(sample.X_WO, before.X_WO, kClosingStep_s / dt_s)));
     separation.robot_m_s =
-        closing_m_s(distance_m(tick->q + kStep_s * tick->v_command, sample.X_WO));
+        closing_m_s(distance_m(tick->q + kClosingStep_s * tick->v_command, sample.X_WO));
     separation.stop_s = stop.seconds;
     separation.stop_m = GreatestWay(run.robot, tick->q_command, stop.q_end);
     const double margin_m = d_m - ProtectiveDistance(separation);
@@ -81,15 +83,13 @@ Facts Measure(const ValidationRun& run) {
           {"separation_lack_m", deepest_m}};
 }
 
-bool IsJudged(const RunRow& row) {
-  return IsOfGroup(row, validation_group::kEnvelope) || IsOfGroup(row, validation_group::kSoak);
-}
-
-ItemFinding Judge(const Evidence& evidence) {
-  const double samples = SumOf(LargestFirst(evidence, "separation_samples", IsJudged));
-  const std::vector<Told> violated = LargestFirst(evidence, "separation_violated", IsJudged);
-  const std::vector<Told> unanswered = LargestFirst(evidence, "separation_unanswered", IsJudged);
-  const std::vector<Told> lack = LargestFirst(evidence, "separation_lack_m", IsJudged);
+ItemFinding JudgeSeparation(const Evidence& evidence) {
+  const double samples = SumOf(LargestFirst(evidence, "separation_samples", IsEnvelopeOrSoak));
+  const std::vector<Told> violated =
+      LargestFirst(evidence, "separation_violated", IsEnvelopeOrSoak);
+  const std::vector<Told> unanswered =
+      LargestFirst(evidence, "separation_unanswered", IsEnvelopeOrSoak);
+  const std::vector<Told> lack = LargestFirst(evidence, "separation_lack_m", IsEnvelopeOrSoak);
   if (samples == 0) return NothingRun("the arm never moved where its clearance is known");
   ItemFinding finding;
   const double share = SumOf(violated) / samples;
@@ -112,8 +112,8 @@ ValidationItem SeparationItem() {
           "kept for 99 % of the time in which the arm moves; the supervisor answers within 50 ms "
           "where not",
           "ISO/TS 15066, speed and separation monitoring, with directed speeds",
-          Measure,
-          Judge};
+          MeasureSeparation,
+          JudgeSeparation};
 }
 
 }  // namespace sidestep::bench

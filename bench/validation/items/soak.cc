@@ -11,7 +11,7 @@ namespace {
 constexpr double kMostGrowth = 0.01;
 constexpr std::size_t kLeastEpisodes = 2000;
 
-ItemFinding Judge(const Evidence& evidence) {
+ItemFinding JudgeSoak(const Evidence& evidence) {
   const auto is_soak = [](const RunRow& row) { return IsOfGroup(row, validation_group::kSoak); };
   const std::vector<Told> touched = LargestFirst(evidence, "contact_in_motion", is_soak);
   if (touched.empty()) return NothingRun("--soak runs it, for an hour or so");
@@ -41,7 +41,7 @@ ValidationItem SoakItem() {
           "no contact of a moving arm in 2000 random episodes; no growth of memory",
           "what is rare shows in numbers alone",
           nullptr,
-          Judge};
+          JudgeSoak};
 }
 
 }  // namespace sidestep::bench

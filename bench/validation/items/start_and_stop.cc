@@ -11,7 +11,7 @@ namespace {
 constexpr double kMost_rad = 1e-6, kMost_rad_s = 1e-4, kMost_rad_s2 = 1e-2;
 constexpr double kSettles_s = 0.2;  // of a command after its plan
 
-double ShareOf(const ControlSample& tick) {
+double StandstillShare(const ControlSample& tick) {
   return std::max(tick.v_command.cwiseAbs().maxCoeff() / kMost_rad_s,
                   tick.a_command.cwiseAbs().maxCoeff() / kMost_rad_s2);
 }
@@ -28,17 +28,17 @@ bool IsOver(const record::Recording& recording) {
   return recording.control.back().t > last->plan_start + HorizonOffset(plan_s + kSettles_s);
 }
 
-Facts Measure(const ValidationRun& run) {
+Facts MeasureStartAndStop(const ValidationRun& run) {
   const record::Recording& recording = run.result.recording;
   if (recording.control.empty()) return {};
   const ControlSample& first = recording.control.front();
   const double off_rad = (first.q_command - run.scenario.q_start).cwiseAbs().maxCoeff();
-  Facts facts = {{"start_share", std::max(off_rad / kMost_rad, ShareOf(first))}};
-  if (IsOver(recording)) facts["end_share"] = ShareOf(recording.control.back());
+  Facts facts = {{"start_share", std::max(off_rad / kMost_rad, StandstillShare(first))}};
+  if (IsOver(recording)) facts["end_share"] = StandstillShare(recording.control.back());
   return facts;
 }
 
-ItemFinding Judge(const Evidence& evidence) {
+ItemFinding JudgeStartAndStop(const Evidence& evidence) {
   const auto is_whole = [](const RunRow& row) {
     return IsWithinEnvelope(row) && row.metrics.count("end_share") > 0;
   };
@@ -68,8 +68,8 @@ ValidationItem StartAndStopItem() {
           "1e-6 rad from where the robot means to be, 1e-4 rad/s and 1e-2 rad/s^2 at the first "
           "and the last sample",
           "Franka's documentation: recommended conditions",
-          Measure,
-          Judge};
+          MeasureStartAndStop,
+          JudgeStartAndStop};
 }
 
 }  // namespace sidestep::bench

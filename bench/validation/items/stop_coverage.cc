@@ -8,10 +8,10 @@
 namespace sidestep::bench {
 namespace {
 
-constexpr double kMost_s = 0.35, kMost_m = 0.10;
+constexpr double kMostStop_s = 0.35, kMostStop_m = 0.10;
 constexpr std::size_t kEvery = 10;  // ticks: how far it goes is looked at each 10 ms
 
-Facts Measure(const ValidationRun& run) {
+Facts MeasureStopCoverage(const ValidationRun& run) {
   if (!run.one.is_supervised) return {};
   const control::JerkLimitedTracker tracker = LabTracker(run.robot);
   const std::vector<ControlSample>& ticks = run.result.recording.control;
@@ -29,15 +29,15 @@ Facts Measure(const ValidationRun& run) {
           {"stop_m", furthest_m}};
 }
 
-ItemFinding Judge(const Evidence& evidence) {
-  const RowFilter all = [](const RunRow&) { return true; };
+ItemFinding JudgeStopCoverage(const Evidence& evidence) {
+  const RowTest all = [](const RunRow&) { return true; };
   const std::vector<Told> without = LargestFirst(evidence, "ticks_without_stop", all);
   const std::vector<Told> times = LargestFirst(evidence, "stop_s", IsWithinEnvelope);
   const std::vector<Told> ways = LargestFirst(evidence, "stop_m", IsWithinEnvelope);
   if (times.empty()) return NothingRun("no episode was run under supervision");
   ItemFinding finding;
-  const bool passes =
-      SumOf(without) == 0 && times.front().value <= kMost_s + 1e-9 && ways.front().value <= kMost_m;
+  const bool passes = SumOf(without) == 0 && times.front().value <= kMostStop_s + 1e-9 &&
+                      ways.front().value <= kMostStop_m;
   finding.verdict = passes ? ItemVerdict::kPass : ItemVerdict::kFail;
   finding.evidence = fmt::format(
       "{:.0f} of {:.0f} ticks without a stop within the limits; the longest stop takes {:.3f} s "
@@ -46,10 +46,10 @@ ItemFinding Judge(const Evidence& evidence) {
       1e3 * ways.front().value);
   if (SumOf(without) > 0) {
     finding.worst = WorstOf(without, 0, "{:.0f} ticks without a stop");
-  } else if (times.front().value > kMost_s) {
-    finding.worst = WorstOf(times, kMost_s, "{:.3f} s");
+  } else if (times.front().value > kMostStop_s) {
+    finding.worst = WorstOf(times, kMostStop_s, "{:.3f} s");
   } else {
-    finding.worst = WorstOf(ways, kMost_m, "{:.3f} m");
+    finding.worst = WorstOf(ways, kMostStop_m, "{:.3f} m");
   }
   return finding;
 }
@@ -61,8 +61,8 @@ ValidationItem StopCoverageItem() {
           "a stop at every tick",
           "at all of them within the limits; at most 0.35 s and 0.10 m",
           "a verified stop at all times, as SARA-shield and ARMTD have it",
-          Measure,
-          Judge};
+          MeasureStopCoverage,
+          JudgeStopCoverage};
 }
 
 }  // namespace sidestep::bench

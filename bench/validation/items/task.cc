@@ -6,13 +6,13 @@
 namespace sidestep::bench {
 namespace {
 
-constexpr double kLeastShare = 0.85;
+constexpr double kLeastGoalShare = 0.85;
 
-Facts Measure(const ValidationRun& run) {
+Facts MeasureTask(const ValidationRun& run) {
   return {{"reaches_goal", run.result.outcome == Outcome::kGoal ? 1 : 0}};
 }
 
-ItemFinding Judge(const Evidence& evidence) {
+ItemFinding JudgeTask(const Evidence& evidence) {
   const auto is_solvable = [](const RunRow& row) {
     const auto free = row.metrics.find("free_path");
     return IsWithinEnvelope(row) && free != row.metrics.end() && free->second == 1;
@@ -21,7 +21,7 @@ ItemFinding Judge(const Evidence& evidence) {
   if (told.empty()) return NothingRun("no free motion was found in any episode");
   ItemFinding finding;
   const double share = SumOf(told) / static_cast<double>(told.size());
-  finding.verdict = share >= kLeastShare ? ItemVerdict::kPass : ItemVerdict::kFail;
+  finding.verdict = share >= kLeastGoalShare ? ItemVerdict::kPass : ItemVerdict::kFail;
   finding.evidence = fmt::format(
       "the goal was reached in {} of {} episodes within the envelope for which one who knows the "
       "future finds a free motion ({:.0f} %)",
@@ -40,8 +40,8 @@ ValidationItem TaskItem() {
           "the task",
           "the goal reached in 85 % of episodes in which it can be",
           "a search with the true future and many guesses",
-          Measure,
-          Judge};
+          MeasureTask,
+          JudgeTask};
 }
 
 }  // namespace sidestep::bench

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kMost_m_s = 0.5, kMostAtFirst_m_s = 0.25;
 
-Facts Measure(const ValidationRun& run) {
+Facts MeasureToolSpeed(const ValidationRun& run) {
   const record::Recording& recording = run.result.recording;
   double most_m_s = 0;
   for (std::size_t i = 1; i < recording.p_WTool.size(); ++i) {
@@ -20,7 +20,7 @@ Facts Measure(const ValidationRun& run) {
   return {{"tool_speed_m_s", most_m_s}};
 }
 
-ItemFinding Judge(const Evidence& evidence) {
+ItemFinding JudgeToolSpeed(const Evidence& evidence) {
   const std::vector<Told> told = LargestFirst(evidence, "tool_speed_m_s", IsWithinEnvelope);
   if (told.empty()) return NothingRun("no episode was run");
   const double most_m_s = told.front().value;
@@ -42,8 +42,8 @@ ValidationItem ToolSpeedItem() {
           "speed of the tool",
           "at most 0.5 m/s, and safety.tool_speed_m_s; 0.25 m/s in the first sessions",
           "reduced speed of ISO 10218-1: 250 mm/s",
-          Measure,
-          Judge};
+          MeasureToolSpeed,
+          JudgeToolSpeed};
 }
 
 }  // namespace sidestep::bench

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kMostTorque = 0.95, kMostRate = 1.0;
 
-Facts Measure(const ValidationRun& run) {
+Facts MeasureTorque(const ValidationRun& run) {
   // What is run into is pushed.
   if (run.one.on_the_wire || record::FirstTouch(run.result.recording)) return {};
   double use = 0;
@@ -26,7 +26,7 @@ Facts Measure(const ValidationRun& run) {
           {"torque_rate_use", run.result.recording.metrics.at("commanded_torque_rate_use")}};
 }
 
-ItemFinding Judge(const Evidence& evidence) {
+ItemFinding JudgeTorque(const Evidence& evidence) {
   const std::vector<Told> torques = LargestFirst(evidence, "torque_use", IsWithinEnvelope);
   const std::vector<Told> rates = LargestFirst(evidence, "torque_rate_use", IsWithinEnvelope);
   if (torques.empty() || rates.empty()) return NothingRun("the robot has no such limits");
@@ -55,8 +55,8 @@ ValidationItem TorqueItem() {
           "at most 95 % of the robot's torque limits, which gravity alone comes near at full "
           "reach; their rate within its limit",
           "the robot's table of limits; inertias of franka_description",
-          Measure,
-          Judge};
+          MeasureTorque,
+          JudgeTorque};
 }
 
 }  // namespace sidestep::bench
