@@ -11,6 +11,7 @@
 #include <optional>
 #include <ostream>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,7 @@
 #include "sidestep/bench/validation/perception.h"
 #include "sidestep/bench/validation/protective_distance.h"
 #include "sidestep/bench/validation/report.h"
+#include "sidestep/bench/validation/support.h"
 #include "sidestep/bench/validation/timing.h"
 #include "sidestep/core/atomic_file.h"
 #include "sidestep/core/input_error.h"
@@ -201,6 +203,64 @@ TEST(FaultySensor, OfAWrongCalibrationIsOffByThatAlways) {
   EXPECT_GT(off.norm(), 1e-4);
   EXPECT_LE(off.norm(), 0.01 + 0.02 + 1e-9);
   EXPECT_EQ(scans[30]->objects.at(0).X_WO.translation(), off);
+}
+
+// An arm that turns at its first joint, and a box beside its path, which stands.
+struct TurningArm {
+  ValidationSubject subject = TheTable();
+  control::JerkLimitedTracker tracker = LabTracker(subject.robot);
+
+  // Of 50 ms from one state on: by the quickest stop, or as before.
+  Facts Measure(bool stops, const Pose& X_WO) const {
+    const int n = subject.robot.num_joints();
+    ControlSample tick;
+    tick.q_command = subject.robot.configurations().at("home");
+    tick.v_command = tick.a_command = Eigen::VectorXd::Zero(n);
+    tick.v_command(0) = 0.5;
+    EpisodeResult result;
+    for (int i = 0; i <= 50; ++i) {
+      tick.t = EpisodeTime(i * 1e-3);
+      if (i > 0 && stops) {
+        const control::JointPoint next =
+            tracker.Brake({tick.q_command, tick.v_command, tick.a_command}, 1e-3);
+        tick.q_command = next.q;
+        tick.v_command = next.v;
+        tick.a_command = next.a;
+      } else if (i > 0) {
+        tick.q_command += 1e-3 * tick.v_command;
+      }
+      tick.q = tick.q_command;
+      result.recording.control.push_back(tick);
+      TruthSample sample;
+      sample.t = tick.t;
+      sample.X_WO = {X_WO};
+      if (i % 10 == 0) result.recording.truth.push_back(sample);
+    }
+    const std::span<const ValidationItem> items = ValidationItems();
+    const auto item = std::find_if(items.begin(), items.end(),
+                                   [](const ValidationItem& of) { return of.number == 10; });
+    const ValidationCase supervised;
+    return item->measure({supervised, subject.scenario, subject.robot, result});
+  }
+};
+
+TEST(ProtectiveDistance, HasNoReactionTimeOfAnArmThatStopsAlready) {
+  const TurningArm arm;
+  const double radius_m = 0.5;
+  // From behind on towards the arm, until even the one that stops is too near.
+  double angle = 1.5;
+  const auto beside = [&] {
+    return Pose::Translation({radius_m * std::cos(angle), radius_m * std::sin(angle), 0.6});
+  };
+  const auto violated = [&](bool stops) {
+    return arm.Measure(stops, beside()).at("separation_violated");
+  };
+  while (angle > 0 && violated(/*stops=*/true) == 0) angle -= 0.01;
+  angle += 0.01;
+  EXPECT_GT(angle, 0.2);
+  EXPECT_EQ(violated(/*stops=*/true), 0);
+  // What it would go on by in 0.12 s is missing to the one that does not stop.
+  EXPECT_GT(arm.Measure(/*stops=*/false, beside()).at("separation_lack_m"), 0.02);
 }
 
 // Computed by hand, to two digits.
