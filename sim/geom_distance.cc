@@ -131,11 +131,20 @@ GeomDistance::GeomDistance(const mjModel& model)
   }
 }
 
+double GeomDistance::BoundFrom(const mjData& data, int geom, int other) const {
+  const Eigen::Vector3d apart = GeomPosition(data, other) - GeomPosition(data, geom);
+  const double radius = model_.geom_rbound[other];
+  if (model_.geom_type[geom] != mjGEOM_BOX) return apart.norm() - model_.geom_rbound[geom] - radius;
+  const Eigen::Vector3d p = GeomRotation(data, geom).transpose() * apart;
+  const Eigen::Map<const Eigen::Vector3d> half_m(model_.geom_size + 3 * geom);
+  return (p.cwiseAbs() - half_m).cwiseMax(0).norm() - radius;
+}
+
 double GeomDistance::LowerBound(const mjData& data, int geom1, int geom2) const {
-  const double radius1 = model_.geom_rbound[geom1], radius2 = model_.geom_rbound[geom2];
-  if (radius1 == 0 || radius2 == 0) return 0;  // unbounded, for MuJoCo
-  const double apart = (GeomPosition(data, geom1) - GeomPosition(data, geom2)).norm();
-  return std::max(0.0, apart - radius1 - radius2);
+  if (model_.geom_rbound[geom1] == 0 || model_.geom_rbound[geom2] == 0) {
+    return 0;  // unbounded, for MuJoCo
+  }
+  return std::max({0.0, BoundFrom(data, geom1, geom2), BoundFrom(data, geom2, geom1)});
 }
 
 const ConvexSolid& GeomDistance::ConvexFirst(int* geom1, int* geom2) const {

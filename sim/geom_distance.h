@@ -39,7 +39,7 @@ class GeomDistance {
   /// deepest. @throws as Distance.
   double Depth(const mjData& data, int geom1, int geom2) const;
 
-  /// A quick lower bound of Distance, from spheres around the geoms.
+  /// A quick lower bound of Distance, from spheres around the geoms; a box is taken as it is.
   double LowerBound(const mjData& data, int geom1, int geom2) const;
 
  private:
@@ -49,6 +49,8 @@ class GeomDistance {
     Eigen::Vector3d lower_m, upper_m;  ///< the box around it, in the height field's frame
   };
   static std::vector<Prism> MakePrisms(const mjModel& model, int hfield);
+  /// That of a geom from the sphere around another one.
+  double BoundFrom(const mjData& data, int geom, int other) const;
   /// Swaps the two where needed, so that the first one is convex.
   const ConvexSolid& ConvexFirst(int* geom1, int* geom2) const;
 
