@@ -14,15 +14,15 @@ inline constexpr const char* kGpCostPrefix = "gp_cost_";
 inline constexpr const char* kObstacleCostPrefix = "obstacle_cost_";
 
 struct PublishedCase {
-  sdf::Knowledge knowledge;
   const char* name;
+  sdf::Knowledge knowledge;
   bool is_published;  ///< false: the case is ours
 };
 /// In the order of the published files, then ours.
 inline constexpr PublishedCase kPublishedCases[] = {
-    {sdf::Knowledge::kStatic, "static", true},
-    {sdf::Knowledge::kExecuteAndUpdate, "execute_update", true},
-    {sdf::Knowledge::kFullKnowledge, "full_knowledge", true},
-    {sdf::Knowledge::kPrediction, "prediction", false}};
+    {"static", sdf::Knowledge::kStatic, true},
+    {"execute_update", sdf::Knowledge::kExecuteAndUpdate, true},
+    {"full_knowledge", sdf::Knowledge::kFullKnowledge, true},
+    {"prediction", sdf::Knowledge::kPrediction, false}};
 
 }  // namespace sidestep::bench
