@@ -7,16 +7,10 @@
 #include "sidestep/bench/free_path_search.h"
 #include "sidestep/bench/recorded_fields.h"
 #include "sidestep/bench/true_world.h"
+#include "sidestep/record/questions.h"
 
 namespace sidestep::bench {
 namespace {
-
-std::optional<EpisodeTime> FirstTouch(const record::Recording& recording) {
-  for (const TruthSample& sample : recording.truth) {
-    if (sample.in_contact) return EpisodeTime(sample.contact_s);
-  }
-  return std::nullopt;
-}
 
 bool HasReached(const record::Recording& recording) {
   const auto time_s = recording.metrics.find("time_to_goal_s");
@@ -25,12 +19,8 @@ bool HasReached(const record::Recording& recording) {
 
 // Where the arm was told to be, from which every plan goes on.
 PathStart StartAt(const record::Recording& recording, EpisodeTime t) {
-  const auto sample = std::lower_bound(
-      recording.control.begin(), recording.control.end(), t,
-      [](const ControlSample& control, EpisodeTime time) { return control.t < time; });
-  const ControlSample& control =
-      sample == recording.control.end() ? recording.control.back() : *sample;
-  return {t, control.q_command, control.v_command};
+  const ControlSample& tick = *record::TickAt(recording, t);
+  return {t, tick.q_command, tick.v_command};
 }
 
 HindsightVerdict VerdictOn(const std::vector<HindsightCycle>& cycles) {
@@ -67,7 +57,7 @@ Hindsight LookBack(const record::Recording& recording, const scenarios::Scenario
   const std::string why_not = WhyNoRecordedFields(recording, scenario);
   if (!why_not.empty()) throw std::invalid_argument("LookBack: " + why_not);
   Hindsight hindsight;
-  hindsight.contact = FirstTouch(recording);
+  if (const auto touch = record::FirstTouch(recording)) hindsight.contact = touch->t;
   if (!hindsight.contact && HasReached(recording)) return hindsight;
   const EpisodeTime last = hindsight.contact.value_or(recording.control.back().t);
   const double reach_m = scenario.epsilon_m + robot.largest_sphere_radius_m();

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <string_view>
+#include <vector>
 
 namespace sidestep::record {
 namespace {
@@ -30,6 +32,15 @@ EpisodeTime EndOf(const Recording& recording) {
   if (!recording.control.empty()) end = std::max(end, recording.control.back().t);
   if (!recording.truth.empty()) end = std::max(end, recording.truth.back().t);
   return end;
+}
+
+const ControlSample* TickAt(const Recording& recording, EpisodeTime t) {
+  const std::vector<ControlSample>& ticks = recording.control;
+  if (ticks.empty()) return nullptr;
+  const auto next =
+      std::upper_bound(ticks.begin(), ticks.end(), t,
+                       [](EpisodeTime at, const ControlSample& tick) { return at < tick.t; });
+  return next == ticks.begin() ? &*next : &*std::prev(next);
 }
 
 std::optional<Touch> FirstTouch(const Recording& recording) { return FirstTouch(recording, kEver); }

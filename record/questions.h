@@ -14,6 +14,8 @@ namespace sidestep::record {
 
 /// When the last sample was taken; zero if there is none.
 EpisodeTime EndOf(const Recording& recording);
+/// The latest tick at or before `t`, or the first one; null: there is none.
+const ControlSample* TickAt(const Recording& recording, EpisodeTime t);
 
 /// The robot touched something that it may not touch.
 struct Touch {

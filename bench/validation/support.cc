@@ -85,15 +85,6 @@ double FastestSphere_m_s(const robot::RobotModel& robot, const ControlSample& ti
   return fastest_m_s;
 }
 
-const ControlSample* TickAt(const record::Recording& recording, EpisodeTime t) {
-  const std::vector<ControlSample>& ticks = recording.control;
-  if (ticks.empty()) return nullptr;
-  const auto next =
-      std::upper_bound(ticks.begin(), ticks.end(), t,
-                       [](EpisodeTime at, const ControlSample& tick) { return at < tick.t; });
-  return next == ticks.begin() ? &*next : &*std::prev(next);
-}
-
 control::JerkLimitedTracker LabTracker(const robot::RobotModel& robot) {
   control::SafetySettings settings;
   settings.range_margin_rad = kLeastJointMargin_rad;

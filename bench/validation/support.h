@@ -47,8 +47,6 @@ bool IsMoving(const Eigen::VectorXd& v);
 bool IsToldToMove(const ControlSample& tick);
 /// How fast the fastest sphere of the arm is told to move at a tick [m/s].
 double FastestSphere_m_s(const robot::RobotModel& robot, const ControlSample& tick);
-/// The latest tick at or before `t`, or the first one; null: there is none.
-const ControlSample* TickAt(const record::Recording& recording, EpisodeTime t);
 
 /// How far joints are to be from their ends.
 inline constexpr double kLeastJointMargin_rad = 0.1;

@@ -39,6 +39,17 @@ TEST(Questions, TheEndIsWhereTheLastSampleIs) {
   EXPECT_EQ(EndOf(Recording()), EpisodeTime(0));
 }
 
+TEST(Questions, TheTickOfAMomentIsTheLatestUntilThen) {
+  Recording recording;
+  EXPECT_EQ(TickAt(recording, EpisodeTime(1)), nullptr);
+  for (const double t_s : {0.5, 0.501, 0.502})
+    recording.control.emplace_back().t = EpisodeTime(t_s);
+  EXPECT_EQ(TickAt(recording, EpisodeTime(0.501)), &recording.control[1]);
+  EXPECT_EQ(TickAt(recording, EpisodeTime(0.5019)), &recording.control[1]);
+  EXPECT_EQ(TickAt(recording, EpisodeTime(2)), &recording.control[2]);
+  EXPECT_EQ(TickAt(recording, EpisodeTime(0)), &recording.control[0]);
+}
+
 TEST(Questions, TheLeastClearanceIsThatUpToAMoment) {
   const Recording recording = Passing();
   EXPECT_NEAR(LeastClearance(recording, EpisodeTime(0.5))->clearance_m, 0.031 + 0.15, 1e-12);

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "sidestep/bench/validation/support.h"
+#include "sidestep/record/questions.h"
 
 namespace sidestep::bench {
 namespace {
@@ -34,7 +35,7 @@ Facts MeasureClearance(const ValidationRun& run) {
     for (; scan != recording.observations.end() && scan->t_arrival <= sample.t; ++scan) {
       sigma_m = SigmaOf(*scan);
     }
-    const ControlSample* const tick = TickAt(recording, sample.t);
+    const ControlSample* const tick = record::TickAt(recording, sample.t);
     if (tick == nullptr || !IsToldToMove(*tick)) continue;
     const double distance_m = DistanceToObstacles(run.scenario, run.robot, tick->q, sample.X_WO);
     least_m = std::min(least_m, distance_m);

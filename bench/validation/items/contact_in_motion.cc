@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sidestep/bench/validation/support.h"
+#include "sidestep/record/questions.h"
 
 namespace sidestep::bench {
 namespace {
@@ -27,7 +28,7 @@ Facts MeasureContactInMotion(const ValidationRun& run) {
     }
     bool moves = false;
     for (const double aside_s : {-kSameMoment_s, 0.0, kSameMoment_s}) {
-      const ControlSample* const tick = TickAt(recording, t + HorizonOffset(aside_s));
+      const ControlSample* const tick = record::TickAt(recording, t + HorizonOffset(aside_s));
       if (tick == nullptr || !IsToldToMove(*tick)) continue;
       moves = true;
       speed_m_s = std::max(speed_m_s, FastestSphere_m_s(run.robot, *tick));

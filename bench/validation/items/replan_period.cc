@@ -5,6 +5,7 @@
 
 #include "sidestep/bench/statistics.h"
 #include "sidestep/bench/validation/support.h"
+#include "sidestep/record/questions.h"
 
 namespace sidestep::bench {
 namespace {
@@ -14,7 +15,8 @@ constexpr double kResting_rad_s = 0.05;
 
 // Who is made to brake, or is pushed, waits until he rests before he plans anew.
 bool ComesToRest(const record::Recording& recording, EpisodeTime from, EpisodeTime to) {
-  const ControlSample *const first = TickAt(recording, from), *const last = TickAt(recording, to);
+  const ControlSample* const first = record::TickAt(recording, from);
+  const ControlSample* const last = record::TickAt(recording, to);
   if (first == nullptr || last->v_command.norm() >= kResting_rad_s) return false;
   return std::any_of(first, last + 1, [](const ControlSample& tick) {
     return IsToldToMove(tick) || IsMoving(tick.v);

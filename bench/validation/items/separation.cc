@@ -7,6 +7,7 @@
 
 #include "sidestep/bench/validation/protective_distance.h"
 #include "sidestep/bench/validation/support.h"
+#include "sidestep/record/questions.h"
 
 namespace sidestep::bench {
 namespace {
@@ -51,7 +52,7 @@ Facts MeasureSeparation(const ValidationRun& run) {
   bool was_counted = false;
   for (std::size_t i = 1; i < recording.truth.size(); ++i) {
     const TruthSample &sample = recording.truth[i], &before = recording.truth[i - 1];
-    const ControlSample* const tick = TickAt(recording, sample.t);
+    const ControlSample* const tick = record::TickAt(recording, sample.t);
     const double dt_s = (sample.t - before.t).seconds();
     if (tick == nullptr || !IsToldToMove(*tick) || dt_s <= 0) {
       since_s = -1;
