@@ -26,7 +26,10 @@ constexpr double kUsualStop = 0.92, kLongestStop = 0.97;
 constexpr HorizonOffset kToldAgain(
     0.5);  // what comes and goes is one finding until it is gone so long
 
-constexpr double kEasedShare = 0.9;  // of the pace that would do, so that the arm can catch up
+// Of the pace that would do, and for how long after it had to brake: so that the arm can catch up
+// without being too fast at once again. Else it would shake.
+constexpr double kEasedShare = 0.9;
+constexpr HorizonOffset kCatchesUp(2);
 
 // Differences of sent positions are wrong by some 1e-15 rad, divided by the tick once a difference.
 constexpr double kUseRounding = 1e-6;
@@ -57,6 +60,15 @@ double Distance(const ArmCapsules::Placed& capsule, const ObstacleState& obstacl
   };
   return SegmentBoxDistance(in_box(capsule.a), in_box(capsule.b), obstacle.half_extents_m) -
          capsule.radius_m - obstacle.radius_m;
+}
+
+// The furthest of the way between two places of a capsule, its axis taken to where its caps end:
+// what sticks out of it moves most where the arm turns about its other end.
+double WayOfAxis_m(const ArmCapsules::Placed& from, const ArmCapsules::Placed& to) {
+  const double length_m = (from.b - from.a).norm();
+  const double beyond = length_m > 0 ? from.radius_m / length_m : 0;
+  const Eigen::Vector3d a = to.a - from.a, b = to.b - from.b, beyond_b = beyond * (b - a);
+  return std::max((b + beyond_b).norm(), (a - beyond_b).norm());
 }
 
 }  // namespace
@@ -279,7 +291,8 @@ void Supervisor::JudgePlaces(const ObstacleReport* report, const JointPoint& nex
 void Supervisor::JudgeTool(const Measured& measured, const JointPoint& next, double period_s) {
   if (tool_gate_.is_open()) return;
   const ToolGate::Ahead ahead = std::exchange(tool_ahead_, {});
-  pace_ = std::min(pace_, ahead.pace);
+  const bool catches_up = eased_ && now_ - *eased_ <= kCatchesUp;
+  pace_ = std::min(pace_, (catches_up ? kEasedShare : 1) * ahead.pace);
   const double speed_m_s = std::max(tool_gate_.SpeedBetween(measured.commanded.q, next.q, period_s),
                                     FastestOnStop_m_s(next, period_s));
   const double most_m_s = kToolShare * tool_gate_.most_m_s();
@@ -298,7 +311,7 @@ void Supervisor::JudgeStop(double period_s) {
   for (std::size_t c = 0; c < static_cast<std::size_t>(capsules_.size()); ++c) {
     const ArmCapsules::Placed &from = placed_[0][c], &to = placed_[kStops][c];
     if (!from.moves) continue;
-    way_m = std::max({way_m, (to.a - from.a).norm(), (to.b - from.b).norm()});
+    way_m = std::max(way_m, WayOfAxis_m(from, to));
   }
   const double pace = std::exchange(followed_pace_, 1);
   const double use = std::max(stop_ticks_ * period_s / settings_.stop_s, way_m / settings_.stop_m);

@@ -88,6 +88,7 @@ double FastestSphere_m_s(const robot::RobotModel& robot, const ControlSample& ti
 control::JerkLimitedTracker LabTracker(const robot::RobotModel& robot) {
   control::SafetySettings settings;
   settings.range_margin_rad = kLeastJointMargin_rad;
+  settings.v_share = kMostVelocityShare;
   return control::JerkLimitedTracker(control::LabLimits(robot, settings));
 }
 

@@ -50,9 +50,11 @@ double FastestSphere_m_s(const robot::RobotModel& robot, const ControlSample& ti
 
 /// How far joints are to be from their ends.
 inline constexpr double kLeastJointMargin_rad = 0.1;
+/// How much of the robot's velocity limits may be used.
+inline constexpr double kMostVelocityShare = 0.5;
 
 /// The tracker that an arm has under the profile `lab`, but for what that keeps in reserve of the
-/// joints' ranges.
+/// joints' ranges and velocities.
 control::JerkLimitedTracker LabTracker(const robot::RobotModel& robot);
 
 /// The stop that could begin at a tick.

@@ -21,8 +21,8 @@ using Eigen::Vector3d;
 
 constexpr double kTick_s = 0.001;
 
-robot::RobotModel Panda() {
-  return robot::RobotModel::Load(SIDESTEP_SOURCE_DIR "/models", "panda",
+robot::RobotModel Panda(const std::string& model = "panda") {
+  return robot::RobotModel::Load(SIDESTEP_SOURCE_DIR "/models", model,
                                  Pose::Translation({0, 0, 0.5}));
 }
 
@@ -75,6 +75,16 @@ class Scene {
       follower_.DrainFindings([this](const Finding& event) { findings_.push_back(event); });
       follower_.DrainLog([](const TickRecord&) {});
     }
+  }
+
+  // Submits the direct motion from where it rests.
+  void Reach(const Eigen::VectorXd& q, double duration_s) {
+    Trajectory way;
+    way.t_s = Eigen::Vector2d(0, duration_s);
+    way.q.resize(7, 2);
+    way.q << state_.q, q;
+    way.v = Eigen::MatrixXd::Zero(7, 2);
+    follower_.Submit(way, EpisodeTime(static_cast<double>(ticks_) * kTick_s));
   }
 
   // Submits a swing of 0.5 rad and back, for 20 s, from where it rests.
@@ -375,8 +385,8 @@ TEST(Supervisor, KeepsEveryStopShort) {
     SafetySettings settings = Lab();
     (by_time ? settings.stop_s : settings.stop_m) = by_time ? kLongest_s : kFurthest_m;
     Scene scene(settings);
-    const robot::RobotModel panda = Panda();
-    const JerkLimitedTracker tracker(LabLimits(panda, settings));
+    const robot::RobotModel covered = Panda("panda:covered");
+    const JerkLimitedTracker tracker(LabLimits(covered, settings));
     double longest_s = 0, furthest_m = 0;
     for (int tick = 1; tick <= 4000; ++tick) {
       ASSERT_NO_FATAL_FAILURE(scene.RunTo(tick * kTick_s));
@@ -387,9 +397,10 @@ TEST(Supervisor, KeepsEveryStopShort) {
         longest_s = std::max(longest_s, stop.ticks() * kTick_s);
         q_end(j) = stop.q_end();
       }
-      const Vector3d way_m = panda.ComputeToolPose(q_end).translation() -
-                             panda.ComputeToolPose(scene.state().q).translation();
-      furthest_m = std::max(furthest_m, way_m.norm());
+      // The cover, not the capsules that are looked at: all of the solids is in it.
+      const Eigen::Matrix3Xd way_m = covered.ComputeSphereCenters(q_end, false).p_WS -
+                                     covered.ComputeSphereCenters(scene.state().q, false).p_WS;
+      furthest_m = std::max(furthest_m, way_m.colwise().norm().maxCoeff());
     }
     EXPECT_LE(by_time ? longest_s : furthest_m, by_time ? kLongest_s : kFurthest_m);
     EXPECT_GT(by_time ? longest_s : furthest_m, 0.7 * (by_time ? kLongest_s : kFurthest_m));
@@ -439,6 +450,35 @@ TEST(Supervisor, KeepsTheToolBelowItsSpeedAndFollowsThePlanOn) {
     EXPECT_EQ(scene.First(SafetyCheck::kToolSpeed, Reaction::kHold), nullptr);
     EXPECT_EQ(scene.mode(), robot::RobotMode::kMoving);
     EXPECT_GT(scene.follower().lag().seconds(), 0.01);
+  }
+}
+
+// By how much the accelerations of all joints change until `t_s`, up and down.
+double ShakingUntil(Scene& scene, double t_s) {
+  Eigen::VectorXd last = scene.state().a;
+  double sum_rad_s2 = 0;
+  for (int tick = 1; tick <= std::lround(t_s / kTick_s); ++tick) {
+    scene.RunTo(tick * kTick_s);
+    sum_rad_s2 += (scene.state().a - last).cwiseAbs().sum();
+    last = scene.state().a;
+  }
+  return sum_rad_s2;
+}
+
+// Who brakes for a tick and catches up again and again shakes.
+TEST(Supervisor, DoesNotShakeTheArmWhereThePlanIsTooFastForTheTool) {
+  for (const double duration_s : {3.0, 5.0}) {
+    const auto shaking_at = [&](double tool_m_s) {
+      SafetySettings settings = Lab();
+      settings.tool_speed_m_s = tool_m_s;
+      Scene scene(settings);
+      scene.Reach(Panda().configurations().at("table_forward"), duration_s);
+      return ShakingUntil(scene, 20);
+    };
+    const double planned = shaking_at(10);
+    for (const double tool_m_s : {0.25, 0.1}) {
+      EXPECT_LT(shaking_at(tool_m_s), 5 * planned) << duration_s << " s, " << tool_m_s << " m/s";
+    }
   }
 }
 

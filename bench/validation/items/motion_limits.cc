@@ -13,7 +13,7 @@ struct Use {
   const char* what;
   double most;
 };
-constexpr Use kUses[] = {{"velocity_use", "velocity", 0.5},
+constexpr Use kUses[] = {{"velocity_use", "velocity", kMostVelocityShare},
                          {"acceleration_use", "acceleration", 0.5},
                          {"jerk_use", "jerk", 0.1}};
 // Differences of sent positions are wrong by some 1e-15 rad, divided by 1e-9 s^3.
