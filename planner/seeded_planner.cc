@@ -72,6 +72,12 @@ class SeededPlanner::Search {
     return SolveWithStiffening(max_iterations);
   }
 
+  /// The result of a trial, brought to its end.
+  Candidate Finish(const Candidate& trial) {
+    optimizer_->Restart(*trial.answer.trajectory);
+    return SolveWithStiffening(planner_.gp().max_iterations);
+  }
+
   Candidate LeaveAsItIs(const Trajectory& motion) {
     optimizer_->Restart(motion);
     return SolveWithLimits(1, 0);
@@ -199,6 +205,7 @@ PlanAnswer SeededPlanner::TryAll(const PlanRequest& request, PlanJudge& judge) c
     }
   }
   SearchProgress progress;
+  bool is_trial = false;  // of best: has had few iterations
   for (int i = is_taken_up ? 0 : 1; i < seeds.count(); ++i) {
     const int seed = (first + i) % seeds.count();
     const bool is_good = best.verdict.is_free() &&
@@ -209,7 +216,15 @@ PlanAnswer SeededPlanner::TryAll(const PlanRequest& request, PlanJudge& judge) c
       break;
     }
     Candidate other = search.Solve(seeds.Make(seed), Stages::kBoth, &best.verdict.clearance);
-    if (IsBetter(other.verdict, best.verdict)) best = std::move(other);
+    if (!IsBetter(other.verdict, best.verdict)) continue;
+    best = std::move(other);
+    is_trial = true;
+  }
+  // Only one that is finished tells whether it keeps its limits.
+  if (is_trial && best.verdict.is_free() && !best.verdict.keeps_limits && !best.answer.converged &&
+      !search.IsSpent()) {
+    Candidate finished = search.Finish(best);
+    if (IsBetter(finished.verdict, best.verdict)) best = std::move(finished);
   }
   progress.cut_short = progress.cut_short || search.was_cut_short();
   PlanAnswer answer = std::move(best.answer);

@@ -21,7 +21,8 @@ namespace sidestep::planner {
 /// direct motions with other timings are tried as seeds until one is, and the best counts. Where
 /// all of them touch something, a cold start is followed by detours (planner/seeds.h). Such seeds
 /// get few iterations, and no second stage if the first leaves them less safe than the best so far.
-/// What they and a cold start find free and over a limit is solved again with stiffer limits.
+/// What they and a cold start find free and over a limit is solved again with stiffer limits, once
+/// it is finished: the best of such seeds that is free and not finished is.
 ///
 /// Where the goal is blocked when the horizon ends, no plan to it can be free: then the plan is one
 /// to the nearest place that is (planner/free_goal.h), found in the same way.

@@ -58,6 +58,47 @@ class IdlePlanner final : public SeededPlanner {
   }
 };
 
+// Too fast for the robot at the first guess; elsewhere too fast for what is asked for, until it has
+// had more iterations than a trial gets. The motion is the guess but for one velocity.
+class PatientOptimizer final : public TrajectoryOptimizer {
+ public:
+  void Restart(const Trajectory& guess) override {
+    guess_ = guess;
+    is_first_ = num_guesses_++ == 0;
+  }
+  void AddLimits(double) override {}
+  SolveOutcome Solve(int max_iterations, double) override {
+    is_finished_ = max_iterations >= kPatience;
+    return {std::min(max_iterations, kPatience), is_finished_};
+  }
+  Trajectory GetTrajectory() const override {
+    Trajectory motion = guess_;
+    motion.v(0, 10) = is_first_ ? kTooFast_rad_s : is_finished_ ? kSlow_rad_s : kFast_rad_s;
+    return motion;
+  }
+  PlanCost ComputeCost() override { return {}; }
+
+ private:
+  static constexpr int kPatience = 20;
+  static constexpr double kSlow_rad_s = 1, kFast_rad_s = 1.8, kTooFast_rad_s = 9;  // of 2, or 1.6
+
+  Trajectory guess_;
+  int num_guesses_ = 0;
+  bool is_first_ = true, is_finished_ = false;
+};
+
+class PatientPlanner final : public SeededPlanner {
+ public:
+  PatientPlanner()
+      : SeededPlanner(MakePlanarArm(), {.acceleration_limits = false, .velocity_scale = 0.8},
+                      {.num_detours = 0}) {}
+
+ private:
+  std::unique_ptr<TrajectoryOptimizer> MakeOptimizer(const PlanRequest&) const override {
+    return std::make_unique<PatientOptimizer>();
+  }
+};
+
 PlanRequest Request(const sdf::DistanceField& field) {
   PlanRequest request;
   request.field = &field;
@@ -115,6 +156,19 @@ TEST(SeededPlanner, ChangesNothingForABudgetThatIsNotSpent) {
   EXPECT_EQ(with.spent, without.spent);
   EXPECT_EQ(with.trajectory->q, without.trajectory->q);
   ASSERT_EQ(planner.log.guesses.size(), log.guesses.size());
+}
+
+TEST(SeededPlanner, BringsAGuessThatIsFreeToItsEndBeforeItIsOverTheLimits) {
+  const PatientPlanner planner;
+  const BallField far_away({9, 9, 9}, {0, 0, 0}, 0.1);
+  PlanRequest request = Request(far_away);
+  request.num_states = 41;
+  const PlanResult result = planner.Plan(request);
+  EXPECT_EQ(result.status, PlanStatus::kSolved) << ToString(result.status);
+  EXPECT_LE(result.limit_use.velocity, 0.8);
+  // With an iteration less than that takes (the solve itself counts as one):
+  request.budget.iterations = result.spent - 2;
+  EXPECT_EQ(planner.Plan(request).status, PlanStatus::kOverLimits);
 }
 
 class ASearchCutShort : public ::testing::TestWithParam<int> {};
