@@ -25,6 +25,7 @@ Pose Pose::Translation(const Eigen::Vector3d& p_AB) {
 }
 
 Pose Pose::FromRollPitchYaw(const Eigen::Vector3d& rpy_rad, const Eigen::Vector3d& p_AB) {
+  if (rpy_rad.isZero(0)) return Translation(p_AB);  // mostly, and thousands of times a second
   return Pose(Eigen::AngleAxisd(rpy_rad.z(), Eigen::Vector3d::UnitZ()) *
                   Eigen::AngleAxisd(rpy_rad.y(), Eigen::Vector3d::UnitY()) *
                   Eigen::AngleAxisd(rpy_rad.x(), Eigen::Vector3d::UnitX()),
