@@ -196,6 +196,8 @@ void SimulatedPanda::Tick(const std::optional<RobotCommand>& command) {
   }
   if (recovery_ticks_ > 0 && IsAtRest(reference_) && --recovery_ticks_ == 0) {
     modes_.EndRecovery();
+    // What pushed the arm away has done so: it is held where it is.
+    reference_ = {plant_.q(), {}, {}};
     Tell("recovered");
   }
   const bool was_state_lost = faults_.TakeLostState();

@@ -726,6 +726,19 @@ TEST(FciServer, FeelsWhatItRunsInto) {
               robot::fci::Holds(error.errors(), Error::kJointReflex));
   EXPECT_GT(time_ms, 800) << "before it can have arrived";
   EXPECT_LT(time_ms, 4000);
+
+  // The post has pushed the arm away; after a recovery a motion can begin where that left it.
+  const auto aside_rad = [&driver] {
+    const RobotSnapshot state = driver.ReadOnce();
+    double most_rad = 0;
+    for (std::size_t j = 0; j < state.q.size(); ++j) {
+      most_rad = std::max(most_rad, std::abs(state.q[j] - state.q_d[j]));
+    }
+    return most_rad;
+  };
+  EXPECT_GT(aside_rad(), 1e-6);
+  driver.Recover();
+  EXPECT_EQ(aside_rad(), 0);
 }
 
 // The wall's clock is no part of a test; that it runs at all is.
