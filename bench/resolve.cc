@@ -4,9 +4,11 @@
 
 #include <algorithm>
 
+#include "sidestep/bench/scenario_planner.h"
 #include "sidestep/bench/true_world.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/solid.h"
+#include "sidestep/planner/registry.h"
 #include "sidestep/planner/self_clearance.h"
 #include "sidestep/sdf/shape_field.h"
 
@@ -87,6 +89,20 @@ class TaskChecker {
          {path, "robot"});
   }
 
+  // A horizon is lengthened to what the direct motion takes: slower and slower, that is no horizon.
+  void CheckHorizon() const {
+    constexpr double kMost_s = 60, kMostSteps = 1000;  // as of a horizon that is asked for
+    const auto direct = planner::MakePlanner("straight_line", robot_, SettingsOf(scenario_), {});
+    const double horizon_s = HorizonOf(scenario_, *direct);
+    if (horizon_s <= kMost_s && horizon_s <= (kMostSteps + 0.5) * scenario_.step_s) return;
+    Fail("horizon.duration_s",
+         fmt::format("is too little: within the limits that are asked for, the direct motion takes "
+                     "{:.1f} s, {:.0f} steps; the most are {} s and {} steps",
+                     horizon_s, horizon_s / scenario_.step_s, kMost_s, kMostSteps),
+         {"planner.velocity_scale", "planner.acceleration_scale", "safety.tool_speed_m_s",
+          "horizon.step_s", "robot.model"});
+  }
+
  private:
   // @param against what else may be wrong instead.
   [[noreturn]] void Fail(const std::string& key, const std::string& why,
@@ -124,6 +140,7 @@ void ResolveTask(scenarios::Scenario& scenario, const robot::RobotModel& robot) 
                      "moving_obstacles[" + std::to_string(n) + "]",
                      sdf::ShapeField({}, {motions[n]}));
   }
+  check.CheckHorizon();
 }
 
 }  // namespace sidestep::bench
