@@ -155,8 +155,8 @@ class Validation {
     const auto one = std::find_if(cases_.begin(), cases_.end(),
                                   [&](const auto& each) { return NameOf(each) == options_.only; });
     if (one == cases_.end()) {
-      throw InputError("--only", "'" + options_.only +
-                                     "' is no case of this validation (validation.csv names them)");
+      throw InputError("--only", "'" + options_.only + "' is no case of this validation: one is " +
+                                     NameOf(cases_.front()) + ", validation.csv names all");
     }
     const scenarios::Scenario scenario = ScenarioOf(*one, subject_);
     const OutFolder out(Folder(), {"trace.h5", "result.json"});

@@ -26,7 +26,8 @@ constexpr const char* kLadder[] = {
     "Dry run: `sidestep hardware run SCENARIO --dry-run`, real perception and planning, the robot "
     "not moving.",
     "`sidestep hardware go-to-start SCENARIO`, the stop in your hand.",
-    "A tenth of the speed (planner.velocity_scale), nothing near, the stop in your hand.",
+    "A tenth of the speed (planner.velocity_scale: 0.1, which is of the robot's limits), nothing "
+    "near, the stop in your hand.",
     "A virtual obstacle: `sidestep hardware run SCENARIO`, first slow and far, then near.",
     "A soft foam box on a stick at 0.1 m/s, whoever holds it further than 1.2 m from the base, the "
     "stop in another hand.",
@@ -97,9 +98,14 @@ bool HasFailed(const std::vector<JudgedItem>& items) {
   return CountOf(items, ItemVerdict::kFail) > 0;
 }
 
+ItemVerdict OverallVerdict(const std::vector<JudgedItem>& items) {
+  if (HasFailed(items)) return ItemVerdict::kFail;
+  return CountOf(items, ItemVerdict::kPass) > 0 ? ItemVerdict::kPass : ItemVerdict::kNotRun;
+}
+
 std::string VerdictLine(const std::vector<JudgedItem>& items) {
   return fmt::format("{}: of {} items {} pass, {} fail, {} were not run",
-                     HasFailed(items) ? "fail" : "pass", items.size(),
+                     ToString(OverallVerdict(items)), items.size(),
                      CountOf(items, ItemVerdict::kPass), CountOf(items, ItemVerdict::kFail),
                      CountOf(items, ItemVerdict::kNotRun));
 }
@@ -139,7 +145,7 @@ std::string ValidationJson(const ValidationTitle& title, const std::vector<Judge
   json["sensor"] = title.sensor;
   json["command"] = title.command;
   json["subject"] = title.subject;
-  json["verdict"] = HasFailed(items) ? "fail" : "pass";
+  json["verdict"] = ToString(OverallVerdict(items));
   json["episodes"] = rows.size();
   json["episodes_asked"] = title.num_cases;
   json["items"] = Json::array();

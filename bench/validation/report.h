@@ -23,6 +23,8 @@ struct ValidationTitle {
 /// How many items fail, pass and were not run, in a line.
 std::string VerdictLine(const std::vector<JudgedItem>& items);
 bool HasFailed(const std::vector<JudgedItem>& items);
+/// Of all of them: fail if one does, not run if none passes.
+ItemVerdict OverallVerdict(const std::vector<JudgedItem>& items);
 
 /// The steps from a first packet to full speed in a laboratory, in their order.
 std::span<const char* const> BringUpLadder();
