@@ -115,7 +115,7 @@ scenarios::Scenario DraftScenario(const robot::RobotModel& robot) {
   scenario.static_world = scenarios::StaticWorld::kExact;
   scenario.horizon_s = 3;
   scenario.step_s = 0.1;
-  scenario.planner = "gpmp";
+  scenario.planner = "gpmp_fast";
   scenario.epsilon_m = std::round(100 * std::clamp(0.12 * ReachOf(robot), 0.01, 0.15)) / 100;
   scenario.velocity_scale = 0.95;
   scenario.acceleration_scale = 0.5;

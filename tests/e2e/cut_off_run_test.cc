@@ -95,7 +95,9 @@ class KilledAfter : public ::testing::TestWithParam<int> {};  // so many parts o
 TEST_P(KilledAfter, ARunInSimulationLeavesItsBeginning) {
   const TemporaryFolder folder;
   const auto run = [&](const std::string& out) {
-    return Sidestep({"run", "hsr_walkway", "--set", "horizon.duration_s=20", "--out", out});
+    // By the slower planner, so that it takes long enough.
+    return Sidestep({"run", "hsr_walkway", "--set", "planner.name=gpmp", "--set",
+                     "horizon.duration_s=20", "--out", out});
   };
   const std::string out = folder.path() / "killed", all = folder.path() / "whole";
   Running killed(run(out));
