@@ -109,7 +109,8 @@ TEST_P(HardwareCameraSees, ABoxAndReachesTheGoalWithoutContactOrAbort) {
   EXPECT_FALSE(record::FirstTouch(ran.truth, EpisodeTime(goal_s + 0.5)));
   EXPECT_LE(fastest_m_s, kToolSpeed_m_s);
   for (const auto& event : ran.result["safety_events"]) {
-    EXPECT_THAT(event["reaction"], ::testing::AnyOf("slow", "hold", "none")) << event.dump();
+    EXPECT_THAT(event["reaction"], ::testing::AnyOf("slow", "ease", "hold", "none"))
+        << event.dump();
   }
 }
 
