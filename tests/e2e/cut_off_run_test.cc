@@ -17,9 +17,11 @@
 #include <thread>
 #include <vector>
 
+#include "sidestep/core/input_error.h"
 #include "sidestep/hardware/raw_fci_driver.h"
 #include "sidestep/record/questions.h"
 #include "sidestep/record/recording_file.h"
+#include "sidestep/record/sealed_file.h"
 #include "tests/hardware/own_loopback.h"
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
@@ -44,21 +46,19 @@ bool WaitUntil(const std::function<bool()>& is_so) {
   return is_so();
 }
 
-std::uintmax_t SizeOf(const std::string& path) {
-  std::error_code error;
-  const std::uintmax_t size = fs::file_size(path, error);
-  return error ? 0 : size;
+// How many parts of the journal are on the disk as a whole: one that is being written does not
+// count.
+std::size_t NumWholeParts(const std::string& journal) {
+  try {
+    return record::ReadSealedRow(journal, {"sidestep journal", record::kTraceVersion})
+        .payloads.size();
+  } catch (const InputError&) {  // not begun, or within its first part
+    return 0;
+  }
 }
 
-// When the journal has grown so many times.
-bool WaitForParts(const std::string& folder, int parts) {
-  std::uintmax_t size = 0;
-  for (int i = 0; i < parts; ++i) {
-    std::uintmax_t now = 0;
-    if (!WaitUntil([&] { return (now = SizeOf(folder + "/trace.journal")) > size; })) return false;
-    size = now;
-  }
-  return true;
+bool WaitForParts(const std::string& folder, std::size_t parts) {
+  return WaitUntil([&] { return NumWholeParts(folder + "/trace.journal") >= parts; });
 }
 
 std::vector<std::string> NamesIn(const std::string& folder) {
@@ -90,7 +90,8 @@ void ExpectBeginningOf(const Rows& whole, const Rows& beginning, const IsEqual& 
   EXPECT_TRUE(std::equal(beginning.begin(), beginning.end(), whole.begin(), is_equal));
 }
 
-class KilledAfter : public ::testing::TestWithParam<int> {};  // so many parts of its journal
+class KilledAfter : public ::testing::TestWithParam<std::size_t> {
+};  // so many parts of its journal
 
 TEST_P(KilledAfter, ARunInSimulationLeavesItsBeginning) {
   const TemporaryFolder folder;
@@ -136,7 +137,7 @@ INSTANTIATE_TEST_SUITE_P(Parts, KilledAfter, ::testing::Values(1, 3),
                          [](const auto& test) { return std::to_string(test.param); });
 
 // A scenario on a simulated Panda, both in lock-step.
-class CutOffOnHardware : public ::testing::TestWithParam<int> {
+class CutOffOnHardware : public ::testing::TestWithParam<std::size_t> {
  protected:
   void SetUp() override {
     server_ = std::make_unique<Running>(Sidestep(
