@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "sidestep/bench/scenario_planner.h"
 #include "sidestep/bench/true_world.h"
@@ -10,6 +11,7 @@
 #include "sidestep/core/solid.h"
 #include "sidestep/planner/registry.h"
 #include "sidestep/planner/self_clearance.h"
+#include "sidestep/scenarios/horizon_bounds.h"
 #include "sidestep/sdf/shape_field.h"
 
 namespace sidestep::bench {
@@ -91,14 +93,14 @@ class TaskChecker {
 
   // A horizon is lengthened to what the direct motion takes: slower and slower, that is no horizon.
   void CheckHorizon() const {
-    constexpr double kMost_s = 60, kMostSteps = 1000;  // as of a horizon that is asked for
     const auto direct = planner::MakePlanner("straight_line", robot_, SettingsOf(scenario_), {});
     const double horizon_s = HorizonOf(scenario_, *direct);
-    if (horizon_s <= kMost_s && horizon_s <= (kMostSteps + 0.5) * scenario_.step_s) return;
+    const double steps = std::round(horizon_s / scenario_.step_s);
+    if (horizon_s <= scenarios::kMostHorizon_s && steps <= scenarios::kMostHorizonSteps) return;
     Fail("horizon.duration_s",
          fmt::format("is too little: within the limits that are asked for, the direct motion takes "
                      "{:.1f} s, {:.0f} steps; the most are {} s and {} steps",
-                     horizon_s, horizon_s / scenario_.step_s, kMost_s, kMostSteps),
+                     horizon_s, steps, scenarios::kMostHorizon_s, scenarios::kMostHorizonSteps),
          {"planner.velocity_scale", "planner.acceleration_scale", "safety.tool_speed_m_s",
           "horizon.step_s", "robot.model"});
   }

@@ -16,6 +16,7 @@
 #include "sidestep/core/utf8.h"
 #include "sidestep/core/yaml_reader.h"
 #include "sidestep/scenarios/bounded_number.h"
+#include "sidestep/scenarios/horizon_bounds.h"
 #include "sidestep/scenarios/scenario.h"
 #include "sidestep/scenarios/track_file.h"
 #include "sidestep/scenarios/variations.h"
@@ -28,8 +29,7 @@ namespace {
 constexpr int kMaxCellsPerAxis = 512;
 constexpr double kMinCell_m = 0.001, kMaxCell_m = 10;
 // Bounds against slips such as milliseconds given as seconds; generous for any arm.
-constexpr double kMaxHorizon = 60, kMaxCycleRateHz = 1000;
-constexpr int kMaxStates = 1001;
+constexpr double kMaxCycleRateHz = 1000;
 constexpr double kLeastStep_s = 0.001;  // a control tick
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kShortestLeg_s = 0.01;
@@ -98,13 +98,13 @@ void ReadHorizon(const YamlReader& top, Scenario& scenario) {
   const YamlReader map = top.GetMap("horizon");
   scenario.horizon_s = map.GetPositive("duration_s");
   scenario.step_s = map.GetPositive("step_s");
-  if (scenario.horizon_s > kMaxHorizon) map.Fail("duration_s", "must be at most 60 s");
+  if (scenario.horizon_s > kMostHorizon_s) map.Fail("duration_s", "must be at most 60 s");
   const double steps = scenario.horizon_s / scenario.step_s;
   if (std::abs(steps - std::round(steps)) > 1e-6 || std::round(steps) < 4) {
     throw WrongValue(scenario, "horizon.step_s",
                      "must divide duration_s into at least 4 whole steps", {"horizon.duration_s"});
   }
-  if (std::round(steps) >= kMaxStates) {
+  if (std::round(steps) > kMostHorizonSteps) {
     throw WrongValue(scenario, "horizon.step_s", "makes more than 1000 steps",
                      {"horizon.duration_s"});
   }
