@@ -133,7 +133,7 @@ Clearance ClearanceMeter::Measure(const sdf::DistanceField& field, const Traject
     is_sure = is_sure && q.leftCols(size).cwiseAbs().maxCoeff() < kMostTurn_rad;
     group.Place(q.leftCols(size));
     for (int c = 0; c < size; ++c) {
-      clearance.samples_outside_grid += group.Sample(c, *field.At(moments.Time(begin + c)));
+      clearance.samples_outside_grid += group.Measure(c, *field.At(moments.Time(begin + c)));
     }
     double* const nearly = &nearly_m[static_cast<std::size_t>(begin)];
     obstacle_kernels::ComputeClearance(group.arm(), group.centers_8(), group.samples_8(), nearly);

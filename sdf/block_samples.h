@@ -14,8 +14,11 @@ inline Eigen::Vector3d PointOf(const field_kernels::Block& block, std::size_t n)
   return {block.x[n], block.y[n], block.z[n]};
 }
 inline DistanceSample SampleOf(const field_kernels::Block& block, std::size_t n) {
-  return {
-      block.distance_m[n], {block.gradient_x[n], block.gradient_y[n], block.gradient_z[n]}, true};
+  DistanceSample sample{block.distance_m[n], Eigen::Vector3d::Zero(), true};
+  if (block.with_gradients) {
+    sample.gradient_W << block.gradient_x[n], block.gradient_y[n], block.gradient_z[n];
+  }
+  return sample;
 }
 inline void SetSample(const DistanceSample& sample, std::size_t n, field_kernels::Block& block) {
   block.distance_m[n] = sample.distance_m;

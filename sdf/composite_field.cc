@@ -82,7 +82,8 @@ PlacedComposite CompositeField::PlacedAt(EpisodeTime t) const {
 }
 
 std::unique_ptr<const FieldSlice> CompositeField::At(EpisodeTime t) const {
-  return std::make_unique<PlacedComposite>(PlacedAt(t));
+  // Made in its place, not moved there.
+  return std::unique_ptr<const FieldSlice>(new PlacedComposite(PlacedAt(t)));
 }
 
 DistanceSample CompositeField::Sample(const Eigen::Vector3d& p_WQ, EpisodeTime t) const {

@@ -28,7 +28,8 @@ class FieldSlice {
  public:
   virtual ~FieldSlice() = default;
 
-  /// Fills what the field says of the block's points: to the bit what SampleMany does.
+  /// Fills what the field says of the block's points: to the bit what SampleMany does, distances
+  /// whether gradients are asked for or not.
   /// @param block 1 to PointBlock::kSize finite points, padded (see PointBlock::Pad).
   /// @return how many of them lie outside what was mapped.
   virtual int SampleBlock(PointBlock& block) const = 0;

@@ -67,6 +67,7 @@ M IsCovered(const Grid& grid, const Point& p) {
 }
 
 // SdfGrid::Interpolate. Lanes that are not covered are taken for the first corner.
+template <bool kWithGradient>
 V Interpolate(const Grid& grid, const Point& p, M covered, Point& gradient) {
   const D d;
   const D32 d32;
@@ -99,12 +100,14 @@ V Interpolate(const Grid& grid, const Point& p, M covered, Point& gradient) {
   const V e01 = between(d01.lower, fx, dx01), e11 = between(d11.lower, fx, dx11);
   const V dy0 = hn::Sub(e10, e00), dy1 = hn::Sub(e11, e01);
   const V e0 = between(e00, fy, dy0), e1 = between(e01, fy, dy1);
-  const V dx0 = between(dx00, fy, hn::Sub(dx10, dx00)),
-          dx1 = between(dx01, fy, hn::Sub(dx11, dx01));
   const V dz = hn::Sub(e1, e0);
-  gradient.x = hn::Mul(between(dx0, fz, hn::Sub(dx1, dx0)), cells_per_m);
-  gradient.y = hn::Mul(between(dy0, fz, hn::Sub(dy1, dy0)), cells_per_m);
-  gradient.z = hn::Mul(dz, cells_per_m);
+  if constexpr (kWithGradient) {
+    const V dx0 = between(dx00, fy, hn::Sub(dx10, dx00)),
+            dx1 = between(dx01, fy, hn::Sub(dx11, dx01));
+    gradient.x = hn::Mul(between(dx0, fz, hn::Sub(dx1, dx0)), cells_per_m);
+    gradient.y = hn::Mul(between(dy0, fz, hn::Sub(dy1, dy0)), cells_per_m);
+    gradient.z = hn::Mul(dz, cells_per_m);
+  }
   return between(e0, fz, dz);
 }
 
@@ -113,7 +116,8 @@ Point LoadPoint(const double* x, const double* y, const double* z, std::size_t n
   return {hn::Load(d, x + n), hn::Load(d, y + n), hn::Load(d, z + n)};
 }
 
-int SampleStaticBlock(const Grid& grid, double max_distance_m, Block& block) {
+template <bool kWithGradients>
+int SampleStatic(const Grid& grid, double max_distance_m, Block& block) {
   const D d;
   const V clamp = hn::Set(d, max_distance_m);
   int num_outside = 0;
@@ -121,16 +125,23 @@ int SampleStaticBlock(const Grid& grid, double max_distance_m, Block& block) {
     const Point p = LoadPoint(block.x, block.y, block.z, n);
     const M covered = IsCovered(grid, p);
     Point gradient;
-    const V distance = Interpolate(grid, p, covered, gradient);
+    const V distance = Interpolate<kWithGradients>(grid, p, covered, gradient);
     const M valid = hn::And(covered, hn::Lt(distance, clamp));
     hn::Store(hn::IfThenElse(valid, distance, clamp), d, block.distance_m + n);
-    hn::Store(hn::IfThenElseZero(valid, gradient.x), d, block.gradient_x + n);
-    hn::Store(hn::IfThenElseZero(valid, gradient.y), d, block.gradient_y + n);
-    hn::Store(hn::IfThenElseZero(valid, gradient.z), d, block.gradient_z + n);
+    if constexpr (kWithGradients) {
+      hn::Store(hn::IfThenElseZero(valid, gradient.x), d, block.gradient_x + n);
+      hn::Store(hn::IfThenElseZero(valid, gradient.y), d, block.gradient_y + n);
+      hn::Store(hn::IfThenElseZero(valid, gradient.z), d, block.gradient_z + n);
+    }
     const M is_point = hn::FirstN(d, block.count - n);
     num_outside += static_cast<int>(hn::CountTrue(d, hn::AndNot(covered, is_point)));
   }
   return num_outside;
+}
+
+int SampleStaticBlock(const Grid& grid, double max_distance_m, Block& block) {
+  return block.with_gradients ? SampleStatic<true>(grid, max_distance_m, block)
+                              : SampleStatic<false>(grid, max_distance_m, block);
 }
 
 // (a0 x + a1 y) + a2 z, as PlacedComposite has it.
@@ -140,7 +151,8 @@ V Dot(double a0, double a1, double a2, const Point& p) {
                  hn::Mul(hn::Set(d, a2), p.z));
 }
 
-void LowerBlock(const Placed& object, Block& block) {
+template <bool kWithGradients>
+void Lower(const Placed& object, Block& block) {
   const D d;
   const std::array<double, 9>& R = object.R_WO;
   for (std::size_t n = 0; n < block.count; n += kLanes) {
@@ -153,8 +165,8 @@ void LowerBlock(const Placed& object, Block& block) {
     const M covered = IsCovered(object.grid_O, p_O);
     if (hn::AllFalse(d, covered)) continue;
     Point gradient_O;
-    const V distance =
-        hn::Sub(Interpolate(object.grid_O, p_O, covered, gradient_O), hn::Set(d, object.growth_m));
+    const V distance = hn::Sub(Interpolate<kWithGradients>(object.grid_O, p_O, covered, gradient_O),
+                               hn::Set(d, object.growth_m));
     const V present = hn::Load(d, block.distance_m + n);
     const M nearer = hn::And(covered, hn::Lt(distance, present));
     if (hn::AllFalse(d, nearer)) continue;
@@ -162,10 +174,16 @@ void LowerBlock(const Placed& object, Block& block) {
       hn::Store(hn::IfThenElse(nearer, value, hn::Load(d, in_block + n)), d, in_block + n);
     };
     replace(distance, block.distance_m);
-    replace(Dot(R[0], R[1], R[2], gradient_O), block.gradient_x);
-    replace(Dot(R[3], R[4], R[5], gradient_O), block.gradient_y);
-    replace(Dot(R[6], R[7], R[8], gradient_O), block.gradient_z);
+    if constexpr (kWithGradients) {
+      replace(Dot(R[0], R[1], R[2], gradient_O), block.gradient_x);
+      replace(Dot(R[3], R[4], R[5], gradient_O), block.gradient_y);
+      replace(Dot(R[6], R[7], R[8], gradient_O), block.gradient_z);
+    }
   }
+}
+
+void LowerBlock(const Placed& object, Block& block) {
+  block.with_gradients ? Lower<true>(object, block) : Lower<false>(object, block);
 }
 
 void LowerBlockByHalfSpace(const HalfSpace& half_space, Block& block) {
@@ -182,6 +200,7 @@ void LowerBlockByHalfSpace(const HalfSpace& half_space, Block& block) {
       hn::Store(hn::IfThenElse(nearer, value, hn::Load(d, in_block + n)), d, in_block + n);
     };
     replace(distance, block.distance_m);
+    if (!block.with_gradients) continue;
     replace(hn::Set(d, n_W.x()), block.gradient_x);
     replace(hn::Set(d, n_W.y()), block.gradient_y);
     replace(hn::Set(d, n_W.z()), block.gradient_z);

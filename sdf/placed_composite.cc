@@ -66,6 +66,24 @@ FieldBound DomainBound(const SdfGrid& field_O) {
           -std::numeric_limits<double>::infinity()};
 }
 
+PlacedComposite::Object::Object(const PlacedObject& given)
+    : field_O(given.field_O),
+      readable(field_kernels::IsReadable(*given.field_O)),
+      slack_m(given.bound.slack_m + given.growth_m) {
+  const Eigen::Matrix3d R_WO = given.X_WO.rotation().toRotationMatrix();
+  const Eigen::Vector3d& p_WO = given.X_WO.translation();
+  const Eigen::Vector3d center_W = R_WO * (given.bound.low_O + given.bound.high_O) / 2 + p_WO;
+  const Eigen::Vector3d half_W = R_WO.cwiseAbs() * (given.bound.high_O - given.bound.low_O) / 2 +
+                                 Eigen::Vector3d::Constant(kFloatRounding_m);
+  low_W = center_W - half_W;
+  high_W = center_W + half_W;
+  placed = {field_kernels::ViewOf(*given.field_O),
+            {R_WO(0, 0), R_WO(0, 1), R_WO(0, 2), R_WO(1, 0), R_WO(1, 1), R_WO(1, 2), R_WO(2, 0),
+             R_WO(2, 1), R_WO(2, 2)},
+            {p_WO.x(), p_WO.y(), p_WO.z()},
+            given.growth_m};
+}
+
 PlacedComposite::PlacedComposite(const SdfGrid& static_W, std::span<const PlacedObject> objects,
                                  double max_distance_m, const ExactSolids* solids)
     : static_W_(static_W),
@@ -74,39 +92,25 @@ PlacedComposite::PlacedComposite(const SdfGrid& static_W, std::span<const Placed
       max_distance_m_(max_distance_m),
       solids_(solids) {
   objects_.reserve(objects.size());
-  for (const PlacedObject& given : objects) {
-    const Eigen::Matrix3d R_WO = given.X_WO.rotation().toRotationMatrix();
-    const Eigen::Vector3d center_W =
-        R_WO * (given.bound.low_O + given.bound.high_O) / 2 + given.X_WO.translation();
-    const Eigen::Vector3d half_W = R_WO.cwiseAbs() * (given.bound.high_O - given.bound.low_O) / 2 +
-                                   Eigen::Vector3d::Constant(kFloatRounding_m);
-    Object& object = objects_.emplace_back();
-    object.field_O = given.field_O;
-    object.readable = field_kernels::IsReadable(*given.field_O);
-    object.placed.grid_O = field_kernels::ViewOf(*given.field_O);
-    Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(object.placed.R_WO.data()) = R_WO;
-    Eigen::Map<Eigen::Vector3d>(object.placed.p_WO.data()) = given.X_WO.translation();
-    object.low_W = center_W - half_W;
-    object.high_W = center_W + half_W;
-    object.placed.growth_m = given.growth_m;
-    object.slack_m = given.bound.slack_m + given.growth_m;
-  }
+  for (const PlacedObject& given : objects) objects_.emplace_back(given);
   if (objects_.size() < kMany) return;
 
   constexpr std::size_t kLanes = field_kernels::kBoxLanes;
   const std::size_t size = (objects_.size() + kLanes - 1) / kLanes * kLanes;
   constexpr float kFar = 1e18F;  // of the boxes that fill the last vector
-  for (AlignedVector<float>& lanes : box_lanes_) lanes.assign(size, kFar);
+  box_lanes_ = std::make_unique<BoxLanes>();
+  BoxLanes& box_lanes = *box_lanes_;
+  for (AlignedVector<float>& lanes : box_lanes) lanes.assign(size, kFar);
   for (std::size_t n = 0; n < objects_.size(); ++n) {
     for (std::size_t a = 0; a < 3; ++a) {
       const Eigen::Index axis = static_cast<Eigen::Index>(a);
-      box_lanes_[a][n] = static_cast<float>(objects_[n].low_W(axis) - kFloatRounding_m);
-      box_lanes_[3 + a][n] = static_cast<float>(objects_[n].high_W(axis) + kFloatRounding_m);
+      box_lanes[a][n] = static_cast<float>(objects_[n].low_W(axis) - kFloatRounding_m);
+      box_lanes[3 + a][n] = static_cast<float>(objects_[n].high_W(axis) + kFloatRounding_m);
     }
-    box_lanes_[6][n] = static_cast<float>(objects_[n].slack_m + kFloatRounding_m);
+    box_lanes[6][n] = static_cast<float>(objects_[n].slack_m + kFloatRounding_m);
   }
-  std::fill(box_lanes_[6].begin() + static_cast<std::ptrdiff_t>(objects_.size()),
-            box_lanes_[6].end(), 0.0F);
+  std::fill(box_lanes[6].begin() + static_cast<std::ptrdiff_t>(objects_.size()), box_lanes[6].end(),
+            0.0F);
 }
 
 DistanceSample PlacedComposite::Sample(const Eigen::Vector3d& p_WQ) const {
@@ -151,9 +155,9 @@ void PlacedComposite::LowerByMany(const Eigen::Vector3d& p_WQ, DistanceSample& s
   const std::array<float, 3> p = {static_cast<float>(p_WQ.x()), static_cast<float>(p_WQ.y()),
                                   static_cast<float>(p_WQ.z())};
   for (std::size_t begin = 0; begin < objects_.size(); begin += kChunk) {
-    const std::size_t count = std::min(kChunk, box_lanes_[0].size() - begin);
+    const std::size_t count = std::min(kChunk, (*box_lanes_)[0].size() - begin);
     const auto lanes = [&](std::size_t n) {
-      return std::span(box_lanes_[n]).subspan(begin, count);
+      return std::span((*box_lanes_)[n]).subspan(begin, count);
     };
     std::array<std::uint64_t, kChunk / 64> bits;
     field_kernels::FindNear({lanes(0), lanes(1), lanes(2), lanes(3), lanes(4), lanes(5), lanes(6)},

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -72,6 +73,8 @@ class PlacedComposite final : public FieldSlice {
 
  private:
   struct Object {
+    explicit Object(const PlacedObject& given);
+
     const SdfGrid* field_O;
     bool readable;  // by the kernels
     field_kernels::Placed placed;
@@ -91,7 +94,8 @@ class PlacedComposite final : public FieldSlice {
   double max_distance_m_;
   const ExactSolids* solids_;  // or null
   std::vector<Object> objects_;
-  std::array<AlignedVector<float>, 7> box_lanes_;  // of many objects: see field_kernels::Boxes
+  using BoxLanes = std::array<AlignedVector<float>, 7>;  // as field_kernels::Boxes has them
+  std::unique_ptr<BoxLanes> box_lanes_;                  // of many objects
 };
 
 }  // namespace sidestep::sdf

@@ -12,7 +12,8 @@ struct alignas(64) PointBlock {
   double x[kSize], y[kSize], z[kSize];
   double distance_m[kSize];
   double gradient_x[kSize], gradient_y[kSize], gradient_z[kSize];
-  std::size_t count = 0;  // last: each array begins at a cache line
+  std::size_t count = 0;       // last: each array begins at a cache line
+  bool with_gradients = true;  ///< asked for; if not, what stands there means nothing
 
   /// Repeats the last of `count` >= 1 points up to the next multiple of kVector. Those who answer
   /// work on whole vectors.

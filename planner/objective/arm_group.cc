@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "sidestep/planner/guarded_spheres.h"
-#include "sidestep/sdf/point_block.h"
 
 namespace sidestep::planner {
 namespace {
@@ -133,6 +132,8 @@ ArmGroup::ArmGroup(std::shared_ptr<const Arm> arm) : arm_(std::move(arm)) {
   axes_8_.assign(kGroup * arm_->rows.size() * obstacle_kernels::kNumbersPerAxis, 0.0);
   centers_8_.assign(kGroup * 3 * arm_->spheres.size(), 0.0);
   samples_8_.assign(kGroup * 4 * arm_->hinges.size(), 0.0);
+  constexpr std::size_t kPoints = sdf::PointBlock::kSize;
+  blocks_.resize(kGroup * ((arm_->hinges.size() + kPoints - 1) / kPoints));
 }
 
 void ArmGroup::Place(const Eigen::Ref<const Eigen::MatrixXd>& q) {
@@ -144,25 +145,37 @@ void ArmGroup::Place(const Eigen::Ref<const Eigen::MatrixXd>& q) {
     }
   }
   obstacle_kernels::ComputeCenters(*arm_, q_8_.data(), axes_8_.data(), centers_8_.data());
+
+  // All at once: a vector that is read just after it was written number by number is waited for.
+  sdf::PointBlock* blocks = blocks_.data();
+  for (std::size_t begin = 0; begin < arm_->hinges.size(); begin += sdf::PointBlock::kSize) {
+    const std::size_t count = std::min(sdf::PointBlock::kSize, arm_->hinges.size() - begin);
+    for (std::size_t n = 0; n < count; ++n) {
+      const double* const center =
+          &centers_8_[3 * kGroup * static_cast<std::size_t>(arm_->hinges[begin + n].sphere)];
+      for (std::size_t c = 0; c < kGroup; ++c) {
+        blocks[c].x[n] = center[c];
+        blocks[c].y[n] = center[kGroup + c];
+        blocks[c].z[n] = center[2 * kGroup + c];
+      }
+    }
+    for (std::size_t c = 0; c < kGroup; ++c, ++blocks) {
+      blocks->count = count;
+      blocks->Pad();
+    }
+  }
 }
 
-int ArmGroup::Sample(int c, const sdf::FieldSlice& slice) {
+int ArmGroup::Ask(int c, const sdf::FieldSlice& slice, bool with_gradients) {
   int num_outside = 0;
-  sdf::PointBlock block;
-  for (std::size_t begin = 0; begin < arm_->hinges.size(); begin += sdf::PointBlock::kSize) {
-    block.count = std::min(sdf::PointBlock::kSize, arm_->hinges.size() - begin);
-    for (std::size_t n = 0; n < block.count; ++n) {
-      const double* const center =
-          &centers_8_[3 * kGroup * static_cast<std::size_t>(arm_->hinges[begin + n].sphere)] + c;
-      block.x[n] = center[0];
-      block.y[n] = center[kGroup];
-      block.z[n] = center[2 * kGroup];
-    }
-    block.Pad();
+  double* sample = samples_8_.data() + c;
+  for (auto at = static_cast<std::size_t>(c); at < blocks_.size(); at += kGroup) {
+    sdf::PointBlock& block = blocks_[at];
+    block.with_gradients = with_gradients;
     num_outside += slice.SampleBlock(block);
-    double* sample = &samples_8_[4 * kGroup * begin] + c;
     for (std::size_t n = 0; n < block.count; ++n, sample += 4 * kGroup) {
       sample[0] = block.distance_m[n];
+      if (!with_gradients) continue;
       sample[kGroup] = block.gradient_x[n];
       sample[2 * kGroup] = block.gradient_y[n];
       sample[3 * kGroup] = block.gradient_z[n];

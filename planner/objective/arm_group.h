@@ -8,6 +8,7 @@
 #include "sidestep/robot/robot_model.h"
 #include "sidestep/sdf/aligned_vector.h"
 #include "sidestep/sdf/distance_field.h"
+#include "sidestep/sdf/point_block.h"
 
 namespace sidestep::planner {
 
@@ -28,7 +29,11 @@ class ArmGroup {
   /// @param q n x 1 to n x kSize, column c a configuration.
   void Place(const Eigen::Ref<const Eigen::MatrixXd>& q);
   /// Asks what configuration c sees. @return how many of its spheres are outside what was mapped.
-  int Sample(int c, const sdf::FieldSlice& slice);
+  int Sample(int c, const sdf::FieldSlice& slice) { return Ask(c, slice, /*with_gradients=*/true); }
+  /// The same of distances alone; gradients of samples_8() are left as they were.
+  int Measure(int c, const sdf::FieldSlice& slice) {
+    return Ask(c, slice, /*with_gradients=*/false);
+  }
 
   const obstacle_kernels::Arm& arm() const { return *arm_; }
   /// As in obstacle_kernels.h.
@@ -37,8 +42,11 @@ class ArmGroup {
   const double* samples_8() const { return samples_8_.data(); }
 
  private:
+  int Ask(int c, const sdf::FieldSlice& slice, bool with_gradients);
+
   std::shared_ptr<const obstacle_kernels::Arm> arm_;
   sdf::AlignedVector<double> q_8_, axes_8_, centers_8_, samples_8_;
+  sdf::AlignedVector<sdf::PointBlock> blocks_;  // of the hinges' spheres: kSize for each 64 of them
 };
 
 }  // namespace sidestep::planner

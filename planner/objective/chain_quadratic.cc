@@ -16,8 +16,8 @@ ChainQuadratic::ChainQuadratic(int num_joints, int num_blocks)
     : num_joints_(num_joints),
       num_blocks_(num_blocks),
       stride_(RoundUpToVector(num_joints + ObstacleQuadratics::PaddedRows(num_joints))),
-      panels_(static_cast<std::size_t>(num_blocks) * panel_size(), 0.0),
-      gradient_(vector_size(), 0.0) {}
+      panels_(static_cast<std::size_t>(num_blocks) * panel_size()),
+      gradient_(vector_size()) {}
 
 void ChainQuadratic::SetZero() {
   std::fill(panels_.begin(), panels_.end(), 0.0);

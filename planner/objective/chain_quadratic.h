@@ -15,7 +15,7 @@ namespace sidestep::planner {
 /// Columns are padded with zeros, for those who work on them by vectors.
 class ChainQuadratic {
  public:
-  /// Blocks of 2n for n joints.
+  /// Blocks of 2n for n joints, whose numbers mean nothing before SetZero().
   ChainQuadratic(int num_joints, int num_blocks);
 
   void SetZero();

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -116,6 +117,10 @@ TEST_P(FieldSliceOf, SaysOfItsMomentWhatTheFieldSays) {
           ASSERT_EQ(block.gradient_z[s], expected.gradient_W(2, s));
           num_below_clamp += expected.distance_m(s) < kClamp_m;
         }
+        std::fill_n(block.distance_m, PointBlock::kSize, -1.0);
+        block.with_gradients = false;
+        EXPECT_EQ(slice->SampleBlock(block), expected.num_outside);
+        for (int s = 0; s < count; ++s) ASSERT_EQ(block.distance_m[s], expected.distance_m(s));
       }
     }
     EXPECT_GT(num_below_clamp, 10);
