@@ -25,7 +25,7 @@ void CheckTrajectory(const Trajectory& trajectory) {
     }
     // What lies between two states is bounded by what it is at them.
     const auto v0 = trajectory.v.col(k - 1), v1 = trajectory.v.col(k);
-    const Eigen::VectorXd turn = 6 / (h * h) * (trajectory.q.col(k) - trajectory.q.col(k - 1));
+    const auto turn = 6 / (h * h) * (trajectory.q.col(k) - trajectory.q.col(k - 1));
     if (!(turn - (4 * v0 + 2 * v1) / h).allFinite() ||
         !((2 * v0 + 4 * v1) / h - turn).allFinite()) {
       throw std::invalid_argument("trajectory: every acceleration must be finite, not so after " +

@@ -131,7 +131,7 @@ Clearance ClearanceMeter::Measure(const sdf::DistanceField& field, const Traject
     const int size = std::min(ArmGroup::kSize, moments.count() - begin);
     for (int c = 0; c < size; ++c) moments.NearlyConfiguration(begin + c, q.col(c));
     is_sure = is_sure && q.leftCols(size).cwiseAbs().maxCoeff() < kMostTurn_rad;
-    group.Place(q.leftCols(size));
+    group.PlaceSpheres(q.leftCols(size));
     for (int c = 0; c < size; ++c) {
       clearance.samples_outside_grid += group.Measure(c, *field.At(moments.Time(begin + c)));
     }

@@ -136,7 +136,7 @@ ArmGroup::ArmGroup(std::shared_ptr<const Arm> arm) : arm_(std::move(arm)) {
   blocks_.resize(kGroup * ((arm_->hinges.size() + kPoints - 1) / kPoints));
 }
 
-void ArmGroup::Place(const Eigen::Ref<const Eigen::MatrixXd>& q) {
+void ArmGroup::Place(const Eigen::Ref<const Eigen::MatrixXd>& q, double* axes_8) {
   for (Eigen::Index c = 0; c < kSize; ++c) {
     // What is left of the group is filled with its last configuration.
     const auto q_c = q.col(std::min(c, q.cols() - 1));
@@ -144,7 +144,7 @@ void ArmGroup::Place(const Eigen::Ref<const Eigen::MatrixXd>& q) {
       q_8_[static_cast<std::size_t>(kSize * j + c)] = q_c(j);
     }
   }
-  obstacle_kernels::ComputeCenters(*arm_, q_8_.data(), axes_8_.data(), centers_8_.data());
+  obstacle_kernels::ComputeCenters(*arm_, q_8_.data(), axes_8, centers_8_.data());
 
   // All at once: a vector that is read just after it was written number by number is waited for.
   sdf::PointBlock* blocks = blocks_.data();

@@ -27,7 +27,9 @@ class ArmGroup {
   explicit ArmGroup(std::shared_ptr<const obstacle_kernels::Arm> arm);
 
   /// @param q n x 1 to n x kSize, column c a configuration.
-  void Place(const Eigen::Ref<const Eigen::MatrixXd>& q);
+  void Place(const Eigen::Ref<const Eigen::MatrixXd>& q) { Place(q, axes_8_.data()); }
+  /// The same for who has no use for axes_8(), which are left as they were.
+  void PlaceSpheres(const Eigen::Ref<const Eigen::MatrixXd>& q) { Place(q, nullptr); }
   /// Asks what configuration c sees. @return how many of its spheres are outside what was mapped.
   int Sample(int c, const sdf::FieldSlice& slice) { return Ask(c, slice, /*with_gradients=*/true); }
   /// The same of distances alone; gradients of samples_8() are left as they were.
@@ -42,6 +44,7 @@ class ArmGroup {
   const double* samples_8() const { return samples_8_.data(); }
 
  private:
+  void Place(const Eigen::Ref<const Eigen::MatrixXd>& q, double* axes_8);
   int Ask(int c, const sdf::FieldSlice& slice, bool with_gradients);
 
   std::shared_ptr<const obstacle_kernels::Arm> arm_;

@@ -182,7 +182,10 @@ void CentersOfLanes(const Arm& arm, std::size_t lane, const double* q_8, double*
     const robot::KinematicRow& joint = row.joint;
     if (joint.parent != i - 1) frame = joint.parent < 0 ? base : frames[joint.parent];
     if (joint.is_moved) Move(joint, frame);
-    StoreAxis(joint, frame, axes_8 + kNumbersPerAxis * kGroup * static_cast<std::size_t>(i) + lane);
+    if (axes_8 != nullptr) {
+      StoreAxis(joint, frame,
+                axes_8 + kNumbersPerAxis * kGroup * static_cast<std::size_t>(i) + lane);
+    }
     const auto coordinate = static_cast<std::size_t>(joint.coordinate);
     Advance(joint, hn::Load(d, q_8 + kGroup * coordinate + lane), frame);
     frames[i] = frame;

@@ -76,7 +76,8 @@ struct Arm {
 /// slide.
 inline constexpr std::size_t kNumbersPerAxis = 6;
 
-/// @param q_8 n; @param axes_8 rows x 6 and @param centers_8 S x 3 [m], in W, receive the answer.
+/// @param q_8 n; @param axes_8 rows x 6, or null, and @param centers_8 S x 3 [m], in W, receive the
+/// answer.
 void ComputeCenters(const Arm& arm, const double* q_8, double* axes_8, double* centers_8);
 
 /// @param samples_8 of each hinge what the field says of its sphere: distance, gradient.
