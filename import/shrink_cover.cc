@@ -26,6 +26,14 @@ Eigen::Matrix3Xd EvenDirections(int count) {
   return directions;
 }
 
+// Makes `owner` that of each point that is less far out of it. Two loops over lists that share no
+// memory: of these the compiler works on whole vectors.
+void TakeNearer(const float* __restrict out, int owner, std::size_t count, float* __restrict least,
+                int* __restrict owners) {
+  for (std::size_t j = 0; j < count; ++j) owners[j] = out[j] < least[j] ? owner : owners[j];
+  for (std::size_t j = 0; j < count; ++j) least[j] = out[j] < least[j] ? out[j] : least[j];
+}
+
 // The spheres as unknowns, a column each: the centre and the radius, in units of `scale_m`.
 using Unknowns = Eigen::Matrix4Xd;
 
@@ -98,13 +106,7 @@ class Descent {
               (points_.col(2) - sphere[2]).square())
                  .sqrt() -
              sphere[3];
-      const float* const out = out_.data();
-      const int owner = static_cast<int>(i);
-      for (std::size_t j = 0; j < count; ++j) {
-        const bool is_nearer = out[j] < least_[j];
-        least_[j] = is_nearer ? out[j] : least_[j];
-        owner_[j] = is_nearer ? owner : owner_[j];
-      }
+      TakeNearer(out_.data(), static_cast<int>(i), count, least_.data(), owner_.data());
     }
     const double factor = 2 * penalty;
     for (std::size_t j = 0; j < count; ++j) {
