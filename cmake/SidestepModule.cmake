@@ -91,16 +91,43 @@ mark_as_advanced(SIDESTEP_LLD)
 # sidestep_test(<folder>/<name>_test [SOURCES <further file>...] DEPENDS <target>...
 #               [SLOW | HEAVY | THREADED])
 #
-# Builds tests/<folder>/<name>_test.cc; ctest runs each of its cases, or the whole program at once
-# with SIDESTEP_WHOLE_TEST_PROGRAMS. SLOW cases carry the label "slow", which `./dev test` leaves out
-# and `./dev test --all` runs. HEAVY ones, which take long under sanitizers, carry the label "heavy",
-# and `./dev test --sanitize` leaves them out. THREADED ones, which start threads, carry the label
-# "threaded", and `./dev test --all` runs them under the thread sanitizer. Cases in the folder of a
-# module carry the label "unit", or "unit_threaded".
+# Builds a program of tests/<folder>/<name>_test.cc; ctest runs each of its cases, or the whole
+# program at once with SIDESTEP_WHOLE_TEST_PROGRAMS. SLOW cases carry the label "slow", which
+# `./dev test` leaves out and `./dev test --all` runs. HEAVY ones, which take long under sanitizers,
+# carry the label "heavy", and `./dev test --sanitize` leaves them out. THREADED ones, which start
+# threads, carry the label "threaded", and `./dev test --all` runs them under the thread sanitizer.
+# Cases in the folder of a module carry the label "unit", or "unit_threaded".
 function(sidestep_test path)
-  cmake_parse_arguments(ARG "SLOW;HEAVY;THREADED" "" "SOURCES;DEPENDS" ${ARGN})
+  get_filename_component(folder ${path} DIRECTORY)
   string(REPLACE "/" "_" target ${path})
-  add_executable(${target} ${PROJECT_SOURCE_DIR}/tests/${path}.cc ${ARG_SOURCES})
+  cmake_parse_arguments(ARG "SLOW;HEAVY;THREADED" "" "SOURCES;DEPENDS" ${ARGN})
+  _sidestep_test_program(${target} "${folder}" ${path})
+endfunction()
+
+# sidestep_tests(<folder> <name>_test... DEPENDS <target>... [SLOW | HEAVY | THREADED])
+#
+# The same, of several files that need nothing of their own, as one program, tests_<folder>. Several
+# files are compiled as one, which takes the compiler a third of the time: so each has its names in a
+# namespace that is called as the file is.
+function(sidestep_tests folder)
+  cmake_parse_arguments(ARG "SLOW;HEAVY;THREADED" "" "SOURCES;DEPENDS" ${ARGN})
+  set(target tests_${folder})
+  foreach(kind SLOW HEAVY THREADED)
+    if(ARG_${kind})
+      string(TOLOWER ${target}_${kind} target)
+    endif()
+  endforeach()
+  list(TRANSFORM ARG_UNPARSED_ARGUMENTS PREPEND ${folder}/ OUTPUT_VARIABLE paths)
+  _sidestep_test_program(${target} ${folder} ${paths})
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${SIDESTEP_PRECOMPILE_HEADERS}
+                                             UNITY_BUILD_BATCH_SIZE 6)
+endfunction()
+
+# A program of tests/<path>.cc, by the arguments of its caller.
+function(_sidestep_test_program target folder)
+  list(TRANSFORM ARGN PREPEND ${PROJECT_SOURCE_DIR}/tests/ OUTPUT_VARIABLE files)
+  list(TRANSFORM files APPEND .cc)
+  add_executable(${target} ${files} ${ARG_SOURCES})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
   target_compile_definitions(${target} PRIVATE SIDESTEP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_link_libraries(${target} PRIVATE ${ARG_DEPENDS} GTest::gtest_main GTest::gmock
@@ -111,7 +138,6 @@ function(sidestep_test path)
   if(SIDESTEP_LLD)  # takes half the time, some two hundred times
     target_link_options(${target} PRIVATE -fuse-ld=lld)
   endif()
-  get_filename_component(folder ${path} DIRECTORY)
   set(properties TIMEOUT 600)
   if(ARG_SLOW)
     set(properties TIMEOUT 1800 LABELS slow)

@@ -11,7 +11,7 @@
 #include "sidestep/bench/metrics/registry.h"
 #include "sidestep/bench/metrics/robot_limit_metrics.h"
 
-namespace sidestep::bench {
+namespace sidestep::bench::every_metric_test {
 namespace {
 
 // One joint goes from 0 to 1 rad in 1 s by the cubic q = 3t^2 - 2t^3 (rest to rest, constant jerk
@@ -239,4 +239,4 @@ TEST(Metrics, HaveNamesThatEndInTheirUnit) {
 }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::every_metric_test

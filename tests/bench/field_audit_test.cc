@@ -14,7 +14,7 @@
 
 #include "sidestep/sdf/shape_field.h"
 
-namespace sidestep::bench {
+namespace sidestep::bench::field_audit_test {
 namespace {
 
 constexpr double kClamp_m = 0.3, kCell_m = 0.04;
@@ -213,4 +213,4 @@ TEST(FieldAudit, RefusesTimesInThePastAndNoPoints) {
 }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::field_audit_test

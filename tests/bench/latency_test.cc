@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace sidestep::bench {
+namespace sidestep::bench::latency_test {
 namespace {
 
 scenarios::Scenario With(scenarios::Latency kind, double latency_s) {
@@ -50,4 +50,4 @@ TEST(Latency, MeasuredStaysBetweenAMillisecondAndTheMost) {
 }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::latency_test

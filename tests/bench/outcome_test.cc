@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-namespace sidestep::bench {
+namespace sidestep::bench::outcome_test {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
@@ -70,4 +70,4 @@ TEST(Outcome, ThatNobodyJudgedSaysHowTheEpisodeEnded) {
 }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::outcome_test

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace sidestep::bench {
+namespace sidestep::bench::paired_comparison_test {
 namespace {
 
 // So many cases at one level, each a cluster of its own, in which the first alone succeeds, at a
@@ -56,4 +56,4 @@ TEST(PairedComparison, LeavesOutCostsThatAreNotFinite) {
 TEST(PairedComparison, NeedsCases) { EXPECT_THROW(ComparePaired({}), std::invalid_argument); }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::paired_comparison_test

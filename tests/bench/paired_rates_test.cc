@@ -9,7 +9,7 @@
 
 #include "sidestep/core/random.h"
 
-namespace sidestep::bench {
+namespace sidestep::bench::paired_rates_test {
 namespace {
 
 TEST(NewcombePairedInterval, GivesTheFiguresOfAirwayHyperResponsiveness) {
@@ -124,4 +124,4 @@ TEST(PairedRates, WidenWherePairsOfAClusterResembleEachOther) {
 }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::paired_rates_test

@@ -9,7 +9,7 @@
 #include "sidestep/bench/statistics/signed_rank.h"
 #include "sidestep/core/random.h"
 
-namespace sidestep::bench {
+namespace sidestep::bench::pairwise_means_test {
 namespace {
 
 // Makes every mean.
@@ -64,4 +64,4 @@ TEST(SignedRanks, HaveTheSamePOnBothSidesOfTheirLimit) {
 }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::pairwise_means_test

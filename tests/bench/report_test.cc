@@ -15,7 +15,7 @@
 #include "sidestep/core/input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::bench {
+namespace sidestep::bench::report_test {
 namespace {
 
 using ::testing::AllOf;
@@ -87,4 +87,4 @@ TEST(HtmlPage, EscapesTextAndStandsAlone) {
 }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::report_test

@@ -10,7 +10,7 @@
 #include "sidestep/bench/reproduce/closed_loop_report.h"
 #include "sidestep/scenarios/scenario.h"
 
-namespace sidestep::bench {
+namespace sidestep::bench::reproduce_closed_loop_test {
 namespace {
 
 using ::testing::AllOf;
@@ -110,4 +110,4 @@ TEST(ClosedLoopReport, PlotsEachJointAHundredTimesASecond) {
 }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::reproduce_closed_loop_test

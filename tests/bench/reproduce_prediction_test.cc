@@ -12,7 +12,7 @@
 #include "sidestep/bench/reproduce/true_clearance.h"
 #include "sidestep/core/random.h"
 
-namespace sidestep::bench {
+namespace sidestep::bench::reproduce_prediction_test {
 namespace {
 
 constexpr double kClamp_m = 0.42;
@@ -127,4 +127,4 @@ TEST_F(TrueClearanceTest, SeesWhatPassesBetweenTwoStates) {
 }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::reproduce_prediction_test

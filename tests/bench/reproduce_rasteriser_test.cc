@@ -20,6 +20,9 @@ std::ostream& operator<<(std::ostream& stream, const CellRange& cells) {
   return stream;
 }
 
+}  // namespace sidestep::bench
+
+namespace sidestep::bench::reproduce_rasteriser_test {
 namespace {
 
 const std::string kScenarios = SIDESTEP_SOURCE_DIR "/scenarios";
@@ -127,4 +130,4 @@ TEST(PublishedMaps, HoldTheAuthorsDistancesToTheBit) {
 }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::reproduce_rasteriser_test

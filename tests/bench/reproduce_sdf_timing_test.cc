@@ -13,7 +13,7 @@
 #include "sidestep/bench/reproduce/sdf_timing.h"
 #include "sidestep/scenarios/scenario.h"
 
-namespace sidestep::bench {
+namespace sidestep::bench::reproduce_sdf_timing_test {
 namespace {
 
 constexpr EpisodeTime kFirst(0.2), kSecond(0.6);
@@ -103,4 +103,4 @@ TEST(SdfTiming, MakesARowOfEachSize) {
 }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::reproduce_sdf_timing_test

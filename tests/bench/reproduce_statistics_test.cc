@@ -13,7 +13,7 @@
 #include "sidestep/bench/reproduce/open_loop_statistics.h"
 #include "sidestep/bench/reproduce/open_loop_statistics_text.h"
 
-namespace sidestep::bench {
+namespace sidestep::bench::reproduce_statistics_test {
 namespace {
 
 const std::string kScenarios = SIDESTEP_SOURCE_DIR "/scenarios";
@@ -133,4 +133,4 @@ TEST(ReadOutcomes, RefusesATableWithoutPairOrSpeed) {
 }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::reproduce_statistics_test

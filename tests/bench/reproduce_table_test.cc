@@ -13,7 +13,7 @@
 #include "sidestep/core/input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::bench {
+namespace sidestep::bench::reproduce_table_test {
 namespace {
 
 std::string WriteTable(const TemporaryFolder& folder, const std::string& text) {
@@ -141,4 +141,4 @@ TEST(OpenLoopRuns, AreARunOfEachKnowledgeWithPairsAsSeeds) {
 }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::reproduce_table_test

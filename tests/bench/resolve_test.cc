@@ -10,7 +10,7 @@
 
 #include "sidestep/core/input_error.h"
 
-namespace sidestep::bench {
+namespace sidestep::bench::resolve_test {
 namespace {
 
 const std::string kSource = SIDESTEP_SOURCE_DIR;
@@ -144,4 +144,4 @@ TEST(ResolveTask, RefusesAStartOrGoalBelowTheFloor) {
 }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::resolve_test

@@ -14,7 +14,7 @@
 #include "sidestep/core/input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::bench {
+namespace sidestep::bench::result_file_test {
 namespace {
 
 EpisodeResult SomeResult() {
@@ -199,4 +199,4 @@ TEST_F(ResultFile, LeavesNothingBehindWhereItCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::result_file_test

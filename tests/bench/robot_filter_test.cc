@@ -8,7 +8,7 @@
 
 #include "tests/support/random_points.h"
 
-namespace sidestep::bench {
+namespace sidestep::bench::robot_filter_test {
 namespace {
 
 scenarios::Scenario SeenFrom(const Eigen::Vector3d& position_m, double margin_m,
@@ -109,4 +109,4 @@ TEST(MeasuredAt, IsTheSampleNearestInTime) {
 }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::robot_filter_test

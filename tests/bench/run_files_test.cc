@@ -12,7 +12,7 @@
 #include "sidestep/core/csv.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::bench {
+namespace sidestep::bench::run_files_test {
 namespace {
 
 SingleRun OneRun(const std::string& knowledge, std::uint64_t seed, const std::string& outcome) {
@@ -82,4 +82,4 @@ TEST_F(RunFiles, HoldOneRunOfWhichNothingIsVaried) {
 }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::run_files_test

@@ -9,7 +9,7 @@
 #include "sidestep/core/input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::bench {
+namespace sidestep::bench::run_identity_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -80,4 +80,4 @@ TEST_F(RunIdentityTest, OfAModelThatIsGoneIsAnError) {
 }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::run_identity_test

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace sidestep::bench {
+namespace sidestep::bench::scan_order_test {
 namespace {
 
 Scan Captured(const std::string& sensor, double t_s) {
@@ -105,4 +105,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::scan_order_test

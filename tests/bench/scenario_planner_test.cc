@@ -8,7 +8,7 @@
 #include "sidestep/core/input_error.h"
 #include "tests/support/planar_arm.h"
 
-namespace sidestep::bench {
+namespace sidestep::bench::scenario_planner_test {
 namespace {
 
 // A scenario whose planner map, in line 7, is this one.
@@ -90,4 +90,4 @@ TEST(ScenarioPlanner, LeavesOutWhatTheFileSetsOfAnotherPlannerThanThePersonChose
 }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::scenario_planner_test

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace sidestep::bench {
+namespace sidestep::bench::sensor_watch_test {
 namespace {
 
 // Always overdue; gives scans of these times, then nothing.
@@ -110,4 +110,4 @@ TEST(SensorWatch, AsksNothingOfTheClockOfWhatIsSimulated) {
 }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::sensor_watch_test

@@ -10,7 +10,7 @@
 #include "sidestep/bench/statistics/resampling.h"
 #include "sidestep/bench/statistics/signed_rank.h"
 
-namespace sidestep::bench {
+namespace sidestep::bench::statistics_published_examples_test {
 namespace {
 
 TEST(WilsonInterval, GivesNewcombesFigures) {
@@ -110,4 +110,4 @@ TEST(Bootstrap, GivesTheNormalIntervalOfAMeanOfManyClusters) {
 }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::statistics_published_examples_test

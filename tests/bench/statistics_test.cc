@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace sidestep::bench {
+namespace sidestep::bench::statistics_test {
 namespace {
 
 TEST(Quantile, InterpolatesBetweenOrderStatistics) {
@@ -22,4 +22,4 @@ TEST(Quantile, OfOneValueIsThatValue) { EXPECT_EQ(Quantile({4.5}, 0.95), 4.5); }
 TEST(Quantile, OfNothingIsNotANumber) { EXPECT_TRUE(std::isnan(Quantile({}, 0.5))); }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::statistics_test

@@ -16,7 +16,7 @@
 #include "sidestep/bench/statistics/paired_medians.h"
 #include "sidestep/bench/statistics/paired_rates.h"
 
-namespace sidestep::bench {
+namespace sidestep::bench::summary_page_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -210,4 +210,4 @@ TEST(FreePathSearch, FindsNoneToAGoalOnWhichSomethingStands) {
 }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::summary_page_test

@@ -13,7 +13,7 @@
 #include "sidestep/core/input_error.h"
 #include "sidestep/scenarios/scenario.h"
 
-namespace sidestep::bench {
+namespace sidestep::bench::sweep_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -193,4 +193,4 @@ TEST(SweepPlan, RefusesMoreRunsThanAnybodyHasTimeFor) {
 }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::sweep_file_test

@@ -23,7 +23,7 @@
 #include "tests/support/bytes_of.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::bench {
+namespace sidestep::bench::sweep_rows_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -383,4 +383,4 @@ TEST(RunDatabase, IsRefusedWhereItIsNone) {
 }
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::sweep_rows_test

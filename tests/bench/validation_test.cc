@@ -31,7 +31,7 @@
 #include "tests/support/bytes_of.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::bench {
+namespace sidestep::bench::validation_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -610,4 +610,4 @@ INSTANTIATE_TEST_SUITE_P(Rows, UnfitSubject, ::testing::ValuesIn(kUnfit),
                          [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
-}  // namespace sidestep::bench
+}  // namespace sidestep::bench::validation_test

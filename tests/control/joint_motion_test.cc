@@ -7,7 +7,7 @@
 
 #include "sidestep/core/random.h"
 
-namespace sidestep::control {
+namespace sidestep::control::joint_motion_test {
 namespace {
 
 constexpr double kPeriod_s = 0.001;
@@ -56,4 +56,4 @@ TEST(JointStop, OfAJointAtRestIsWhereItIs) {
 }
 
 }  // namespace
-}  // namespace sidestep::control
+}  // namespace sidestep::control::joint_motion_test

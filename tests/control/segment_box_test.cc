@@ -7,7 +7,7 @@
 #include "sidestep/core/random.h"
 #include "sidestep/core/shape.h"
 
-namespace sidestep::control {
+namespace sidestep::control::segment_box_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -50,4 +50,4 @@ TEST(SegmentBoxDistance, OfAnEdgePassingACornerIsThatOfThePassing) {
 }
 
 }  // namespace
-}  // namespace sidestep::control
+}  // namespace sidestep::control::segment_box_test

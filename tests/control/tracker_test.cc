@@ -11,7 +11,7 @@
 #include "sidestep/core/random.h"
 #include "sidestep/core/trajectory.h"
 
-namespace sidestep::control {
+namespace sidestep::control::tracker_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -331,4 +331,4 @@ TEST(JerkLimitedTracker, RefusesNonsense) {
 }
 
 }  // namespace
-}  // namespace sidestep::control
+}  // namespace sidestep::control::tracker_test

@@ -15,7 +15,7 @@
 #include "sidestep/core/input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::atomic_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -183,4 +183,4 @@ TEST_F(AtomicFileTest, OfOneNameByManyIsThatOfOneOfThem) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::atomic_file_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace sidestep {
+namespace sidestep::base64_test {
 namespace {
 
 // The test vectors of RFC 4648, section 10.
@@ -24,4 +24,4 @@ TEST(Base64, TakesEveryByte) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::base64_test

@@ -15,7 +15,7 @@
 #include "sidestep/core/shape.h"
 #include "tests/support/random_points.h"
 
-namespace sidestep {
+namespace sidestep::convex_polytope_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -225,4 +225,4 @@ TEST(ConvexPolytope, RefusesWhatIsNoSolid) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::convex_polytope_test

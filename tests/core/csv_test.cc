@@ -9,7 +9,7 @@
 
 #include "sidestep/core/input_error.h"
 
-namespace sidestep {
+namespace sidestep::csv_test {
 namespace {
 
 using Fields = std::vector<std::string>;
@@ -81,4 +81,4 @@ TEST(Csv, SaysWhereAFileIsBroken) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::csv_test

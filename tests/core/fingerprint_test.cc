@@ -5,7 +5,7 @@
 #include <initializer_list>
 #include <string>
 
-namespace sidestep {
+namespace sidestep::fingerprint_test {
 namespace {
 
 std::string Of(std::initializer_list<std::string_view> parts) {
@@ -29,4 +29,4 @@ TEST(Fingerprint, TellsEveryChangeAndWhereAPartEnds) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::fingerprint_test

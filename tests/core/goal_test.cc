@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace sidestep {
+namespace sidestep::goal_test {
 namespace {
 
 const Eigen::Vector2d kGoal(0.5, -1), kRest(0, 0);
@@ -85,4 +85,4 @@ INSTANTIATE_TEST_SUITE_P(Stays, GoalWatchOf,
                          [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::goal_test

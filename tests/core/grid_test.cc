@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace sidestep {
+namespace sidestep::grid_test {
 namespace {
 
 // Cells whose faces, at multiples of 1/4, have no rounding.
@@ -103,4 +103,4 @@ TEST(OccupancyGrid, IsFreeUntilCellsAreFilled) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::grid_test

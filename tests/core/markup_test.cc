@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace sidestep {
+namespace sidestep::markup_test {
 namespace {
 
 TEST(Markup, IsEscapedBetweenTagsAndInAttributes) {
@@ -16,4 +16,4 @@ TEST(Markup, ThatIsNoneIsToldInWords) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::markup_test

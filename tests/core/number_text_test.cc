@@ -10,7 +10,7 @@
 
 #include "sidestep/core/random.h"
 
-namespace sidestep {
+namespace sidestep::number_text_test {
 namespace {
 
 TEST(ShortestText, ReadsBackToTheSameBits) {
@@ -50,4 +50,4 @@ TEST(FiniteText, ShowsWhatIsNoNumberAsToldTo) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::number_text_test

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace sidestep {
+namespace sidestep::page_template_test {
 namespace {
 
 TEST(FillTemplate, PutsEachPartWhereItIsNamed) {
@@ -27,4 +27,4 @@ TEST(ScriptJson, LeavesNothingThatCouldEndTheElement) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::page_template_test

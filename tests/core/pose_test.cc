@@ -9,7 +9,7 @@
 
 #include "tests/support/random_points.h"
 
-namespace sidestep {
+namespace sidestep::pose_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -123,4 +123,4 @@ TEST(Pose, NormalisesRotationsOfAnyLength) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::pose_test

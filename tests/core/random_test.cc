@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace sidestep {
+namespace sidestep::random_test {
 namespace {
 
 TEST(RandomStream, IsDecidedBySeedAndPurpose) {
@@ -99,4 +99,4 @@ TEST(RandomStream, NormalNumbersHaveTheMomentsAndTailsOfANormalDistribution) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::random_test

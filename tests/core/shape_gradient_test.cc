@@ -12,7 +12,7 @@
 #include "sidestep/core/random.h"
 #include "tests/support/random_points.h"
 
-namespace sidestep {
+namespace sidestep::shape_gradient_test {
 namespace {
 
 struct Case {
@@ -28,9 +28,9 @@ Shape RandomMesh() {
   return ConvexMesh{std::make_shared<const ConvexPolytope>(points)};
 }
 
-class EveryShape : public ::testing::TestWithParam<Case> {};
+class GradientOfEveryShape : public ::testing::TestWithParam<Case> {};
 
-TEST_P(EveryShape, HasTheGradientOfItsDistance) {
+TEST_P(GradientOfEveryShape, HasTheGradientOfItsDistance) {
   RandomStream random(1, GetParam().name);
   constexpr double kStep_m = 1e-6;
   int num_smooth = 0;
@@ -53,14 +53,14 @@ TEST_P(EveryShape, HasTheGradientOfItsDistance) {
   EXPECT_GT(num_smooth, 8000);
 }
 
-TEST_P(EveryShape, HasAGradientAlsoWhereSeveralSurfacePointsAreNearest) {
+TEST_P(GradientOfEveryShape, HasAGradientAlsoWhereSeveralSurfacePointsAreNearest) {
   for (const Eigen::Vector3d& p :
        {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0, 0, 0.1), Eigen::Vector3d(0, 0, 0.3)}) {
     EXPECT_NEAR(DistanceGradient(GetParam().shape, p).norm(), 1, 1e-9) << p.transpose();
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(ShapeGradient, EveryShape,
+INSTANTIATE_TEST_SUITE_P(ShapeGradient, GradientOfEveryShape,
                          ::testing::Values(Case{"Box", Box{{0.3, 0.5, 0.2}}},
                                            Case{"Sheet", Box{{0.5, 0.02, 0.5}}},
                                            Case{"Sphere", Sphere{0.3}},
@@ -71,4 +71,4 @@ INSTANTIATE_TEST_SUITE_P(ShapeGradient, EveryShape,
                          [](const auto& test) { return test.param.name; });
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::shape_gradient_test

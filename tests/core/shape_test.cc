@@ -12,7 +12,7 @@
 
 #include "tests/support/random_points.h"
 
-namespace sidestep {
+namespace sidestep::shape_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -273,4 +273,4 @@ TEST(Shape, HasTheNameThatScenariosUse) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::shape_test

@@ -8,7 +8,7 @@
 
 #include "sidestep/core/random.h"
 
-namespace sidestep {
+namespace sidestep::tag_track_test {
 namespace {
 
 constexpr double kPeriod_s = 1.0 / 30;
@@ -194,4 +194,4 @@ TEST(TagTrack, RefusesWhatIsFasterThanAnythingThere) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::tag_track_test

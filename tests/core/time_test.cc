@@ -4,7 +4,7 @@
 
 #include <type_traits>
 
-namespace sidestep {
+namespace sidestep::time_test {
 namespace {
 
 template <class A, class B>
@@ -58,4 +58,4 @@ TEST(Time, IsOrdered) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::time_test

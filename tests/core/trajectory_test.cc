@@ -11,7 +11,7 @@
 
 #include "sidestep/core/random.h"
 
-namespace sidestep {
+namespace sidestep::trajectory_test {
 namespace {
 
 Eigen::VectorXd Vector(std::initializer_list<double> values) {
@@ -164,4 +164,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return test.param.name; });
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::trajectory_test

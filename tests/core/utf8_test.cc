@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string>
 
-namespace sidestep {
+namespace sidestep::utf8_test {
 namespace {
 
 // By the definition, without any care for which code points there are.
@@ -99,4 +99,4 @@ TEST(EscapeControls, WritesOutWhatATerminalWouldObey) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::utf8_test

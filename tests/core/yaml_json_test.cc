@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace sidestep {
+namespace sidestep::yaml_json_test {
 namespace {
 
 struct Pair {
@@ -34,4 +34,4 @@ INSTANTIATE_TEST_SUITE_P(Values, YamlAndJson,
 TEST(YamlToJson, RefusesWhatIsNotYaml) { EXPECT_THROW(YamlToJson("a: [1"), std::invalid_argument); }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::yaml_json_test

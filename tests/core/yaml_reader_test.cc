@@ -14,7 +14,7 @@
 #include "sidestep/core/input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::yaml_reader_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -242,4 +242,4 @@ TEST(YamlReader, RefusesAnAliasOfWhatItIsAPartOf) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::yaml_reader_test

@@ -13,7 +13,7 @@
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::bytes_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -297,4 +297,4 @@ TEST(Reproduce, TakesAPublishedTableWithAByteOrderMarkAndRefusesLatin1) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::bytes_test

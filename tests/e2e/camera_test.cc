@@ -20,7 +20,7 @@
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::camera_test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -216,4 +216,4 @@ TEST_F(LookAround, IsRefusedInOneLineWhereItCannotBe) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::camera_test

@@ -13,7 +13,7 @@
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::check_robot_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -89,4 +89,4 @@ TEST(CheckRobot, RefusesWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::check_robot_test

@@ -19,7 +19,7 @@
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::command_line_test {
 namespace {
 
 using ::testing::AllOf;
@@ -759,4 +759,4 @@ TEST(ThinThings, ThatMoveAreWarnedOfToo) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::command_line_test

@@ -26,7 +26,7 @@
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::cut_off_run_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -264,4 +264,4 @@ TEST(RenderCommand, PointsToTheJournalOfARunThatWasCutOff) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::cut_off_run_test

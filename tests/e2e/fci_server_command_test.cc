@@ -19,7 +19,7 @@
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::fci_server_command_test {
 namespace {
 
 using hardware::OwnLoopback;
@@ -161,4 +161,4 @@ TEST(FciServerCommand, WritesATraceOfWhatTrulyHappened) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::fci_server_command_test

@@ -15,7 +15,7 @@
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::hard_scenario_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -127,4 +127,4 @@ INSTANTIATE_TEST_SUITE_P(Files, HardScenario, ::testing::ValuesIn(ScenarioNames(
                          [](const auto& test) { return test.param; });
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::hard_scenario_test

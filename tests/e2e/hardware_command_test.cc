@@ -25,7 +25,7 @@
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::hardware_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -422,4 +422,4 @@ TEST(HardwareHelp, OffersNothingThatIsRefused) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::hardware_command_test

@@ -24,7 +24,7 @@
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::import_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -420,4 +420,4 @@ TEST_F(ImportMjcf, RefusesWhatIsNoArm) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::import_test

@@ -11,7 +11,7 @@
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::report_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -159,4 +159,4 @@ TEST_F(Report, FilmsTheRunsThatAreAskedFor) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::report_test

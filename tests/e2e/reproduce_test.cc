@@ -13,7 +13,7 @@
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::reproduce_test {
 namespace {
 
 using ::testing::AllOf;
@@ -206,4 +206,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::reproduce_test

@@ -16,7 +16,7 @@
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::results_page_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -164,4 +164,4 @@ TEST(DatabasePage, TellsEveryColumnAndTable) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::results_page_test

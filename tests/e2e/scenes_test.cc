@@ -15,7 +15,7 @@
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::scenes_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -211,4 +211,4 @@ TEST_F(Scenes, ThatAreUnusableEndTheCommand) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::scenes_test

@@ -18,7 +18,7 @@
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::sweep_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -409,4 +409,4 @@ TEST_F(SweepTest, IsVerifiedBitForBit) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::sweep_test

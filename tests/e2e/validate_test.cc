@@ -13,7 +13,7 @@
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::validate_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -63,4 +63,4 @@ TEST(Validate, KeepsWhatWasDoneWhenItIsInterrupted) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::validate_test

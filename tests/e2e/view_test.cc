@@ -11,7 +11,7 @@
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::view_test {
 namespace {
 
 using ::testing::IsEmpty;
@@ -193,4 +193,4 @@ TEST(View, RefusesWhatIsNoTraceAndToWriteOverOne) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::view_test

@@ -9,7 +9,7 @@
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::walkway_tags_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -48,4 +48,4 @@ INSTANTIATE_TEST_SUITE_P(Tags, WalkwayByTags,
                                            Seeing{"misbehaving", 3}));
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::walkway_tags_test

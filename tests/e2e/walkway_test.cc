@@ -16,7 +16,7 @@
 #include "tests/support/subprocess.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep {
+namespace sidestep::walkway_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -167,4 +167,4 @@ TEST_F(Walkway, PrintsTheResultAsJsonWhenAsked) {
 }
 
 }  // namespace
-}  // namespace sidestep
+}  // namespace sidestep::walkway_test

@@ -12,7 +12,7 @@
 #include "sidestep/scenarios/tag.h"
 #include "tests/support/random_points.h"
 
-namespace sidestep::hardware {
+namespace sidestep::hardware::body_pose_test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -206,4 +206,4 @@ TEST_F(BodyPose, IsNothingWithoutItsTags) {
 }
 
 }  // namespace
-}  // namespace sidestep::hardware
+}  // namespace sidestep::hardware::body_pose_test

@@ -10,7 +10,7 @@
 #include "tests/support/random_points.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::hardware {
+namespace sidestep::hardware::camera_calibration_test {
 namespace {
 
 using ::testing::ThrowsMessage;
@@ -147,4 +147,4 @@ TEST_F(CameraCalibration, IsRefusedAsAFileThatIsNone) {
 }
 
 }  // namespace
-}  // namespace sidestep::hardware
+}  // namespace sidestep::hardware::camera_calibration_test

@@ -16,7 +16,7 @@
 #include "sidestep/hardware/readiness.h"
 #include "tests/hardware/served_panda.h"
 
-namespace sidestep::hardware {
+namespace sidestep::hardware::every_driver_test {
 namespace {
 
 using robot::fci::RobotMode;
@@ -194,4 +194,4 @@ INSTANTIATE_TEST_SUITE_P(Drivers, EveryDriver, testing::Values("Raw", "Libfranka
                          [](const auto& test) { return test.param; });
 
 }  // namespace
-}  // namespace sidestep::hardware
+}  // namespace sidestep::hardware::every_driver_test

@@ -16,7 +16,7 @@
 #include "sidestep/hardware/raw_fci_driver.h"
 #include "tests/hardware/served_panda.h"
 
-namespace sidestep::hardware {
+namespace sidestep::hardware::fci_server_test {
 namespace {
 
 using robot::fci::Error;
@@ -760,4 +760,4 @@ TEST(FciServer, RunsByTheWallClockToo) {
 }
 
 }  // namespace
-}  // namespace sidestep::hardware
+}  // namespace sidestep::hardware::fci_server_test

@@ -18,7 +18,7 @@
 #include "tests/hardware/perfect_panda.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::hardware {
+namespace sidestep::hardware::readiness_test {
 namespace {
 
 using control::SafetyCheck;
@@ -202,4 +202,4 @@ TEST(WhyNotRecover, RefusesWhileSomethingIsInsideTheProtectiveDistance) {
 }
 
 }  // namespace
-}  // namespace sidestep::hardware
+}  // namespace sidestep::hardware::readiness_test

@@ -10,7 +10,7 @@
 #include "sidestep/core/input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::hardware {
+namespace sidestep::hardware::recorded_frames_test {
 namespace {
 
 robot::Frame SmallFrame(int number) {
@@ -100,4 +100,4 @@ TEST_F(RecordedFrames, AreRefusedWithFileAndLineWhereTheyAreNone) {
 }
 
 }  // namespace
-}  // namespace sidestep::hardware
+}  // namespace sidestep::hardware::recorded_frames_test

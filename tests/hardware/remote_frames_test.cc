@@ -14,7 +14,7 @@
 #include "sidestep/robot/robot_error.h"
 #include "tests/hardware/served_panda.h"
 
-namespace sidestep::hardware {
+namespace sidestep::hardware::remote_frames_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -113,4 +113,4 @@ TEST(RemoteFrames, AreNotTakenFromAnotherProgram) {
 }
 
 }  // namespace
-}  // namespace sidestep::hardware
+}  // namespace sidestep::hardware::remote_frames_test

@@ -4,7 +4,7 @@
 
 #include "tests/hardware/printed_tag.h"
 
-namespace sidestep::hardware {
+namespace sidestep::hardware::tag_detector_test {
 namespace {
 
 using robot::GreyImage;
@@ -90,4 +90,4 @@ TEST_F(TagDetector, TakesPicturesOfAnySize) {
 }
 
 }  // namespace
-}  // namespace sidestep::hardware
+}  // namespace sidestep::hardware::tag_detector_test

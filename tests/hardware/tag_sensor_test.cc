@@ -12,7 +12,7 @@
 #include "sidestep/robot/robot_error.h"
 #include "tests/hardware/printed_tag.h"
 
-namespace sidestep::hardware {
+namespace sidestep::hardware::tag_sensor_test {
 namespace {
 
 constexpr int kModule_px = 8;     // 1 m away
@@ -140,4 +140,4 @@ TEST_F(TagSensor, NoticesThatItsCameraWasMoved) {
 }
 
 }  // namespace
-}  // namespace sidestep::hardware
+}  // namespace sidestep::hardware::tag_sensor_test

@@ -6,7 +6,7 @@
 
 #include "sidestep/core/random.h"
 
-namespace sidestep::imports {
+namespace sidestep::imports::arm_pose_test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -43,4 +43,4 @@ TEST(RollPitchYaw, GivesTheRotationAgainNearARightAngleOfPitch) {
 }
 
 }  // namespace
-}  // namespace sidestep::imports
+}  // namespace sidestep::imports::arm_pose_test

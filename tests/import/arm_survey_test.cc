@@ -19,7 +19,7 @@
 #include "sidestep/import/urdf_tree.h"
 #include "sidestep/sim/arm_file.h"
 
-namespace sidestep::imports {
+namespace sidestep::imports::arm_survey_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -126,4 +126,4 @@ INSTANTIATE_TEST_SUITE_P(Urdfs, ArmSurvey,
                          [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
-}  // namespace sidestep::imports
+}  // namespace sidestep::imports::arm_survey_test

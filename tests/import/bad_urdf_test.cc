@@ -13,7 +13,7 @@
 #include "tests/support/bytes_of.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::imports {
+namespace sidestep::imports::bad_urdf_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -156,4 +156,4 @@ TEST(UrdfInertia, IsRepairedOnRequestAndThatIsSaid) {
 }
 
 }  // namespace
-}  // namespace sidestep::imports
+}  // namespace sidestep::imports::bad_urdf_test

@@ -9,7 +9,7 @@
 #include "sidestep/core/random.h"
 #include "sidestep/import/triangle_mesh.h"
 
-namespace sidestep::imports {
+namespace sidestep::imports::convex_hull_test {
 namespace {
 
 using Eigen::Matrix3Xd;
@@ -101,4 +101,4 @@ TEST(SimplerHull, IsTheHullWhereItHasFewCorners) {
 }
 
 }  // namespace
-}  // namespace sidestep::imports
+}  // namespace sidestep::imports::convex_hull_test

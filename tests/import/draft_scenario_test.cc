@@ -10,7 +10,7 @@
 #include "sidestep/import/commented_yaml.h"
 #include "sidestep/import/free_space.h"
 
-namespace sidestep::imports {
+namespace sidestep::imports::draft_scenario_test {
 namespace {
 
 struct Robot {
@@ -128,4 +128,4 @@ INSTANTIATE_TEST_SUITE_P(Known, EveryRobot,
                          [](const auto& test) { return test.param.name; });
 
 }  // namespace
-}  // namespace sidestep::imports
+}  // namespace sidestep::imports::draft_scenario_test

@@ -6,7 +6,7 @@
 #include <ostream>
 #include <string>
 
-namespace sidestep::imports {
+namespace sidestep::imports::inverse_kinematics_test {
 namespace {
 
 struct Robot {
@@ -70,4 +70,4 @@ INSTANTIATE_TEST_SUITE_P(Shipped, EveryArm,
                          [](const auto& test) { return test.param.name; });
 
 }  // namespace
-}  // namespace sidestep::imports
+}  // namespace sidestep::imports::inverse_kinematics_test

@@ -10,7 +10,7 @@
 
 #include "sidestep/core/input_error.h"
 
-namespace sidestep::imports {
+namespace sidestep::imports::isolated_test {
 namespace {
 
 std::string MessageOf(const std::function<std::string()>& work) {
@@ -47,4 +47,4 @@ TEST(Isolated, OutlivesACrash) {
 }
 
 }  // namespace
-}  // namespace sidestep::imports
+}  // namespace sidestep::imports::isolated_test

@@ -10,7 +10,7 @@
 #include "tests/support/bytes_of.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::imports {
+namespace sidestep::imports::mesh_file_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -128,4 +128,4 @@ TEST_F(MeshFile, IsRefusedIfItIsNone) {
 }
 
 }  // namespace
-}  // namespace sidestep::imports
+}  // namespace sidestep::imports::mesh_file_test

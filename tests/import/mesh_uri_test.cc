@@ -11,7 +11,7 @@
 #include "sidestep/core/input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::imports {
+namespace sidestep::imports::mesh_uri_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -81,4 +81,4 @@ TEST_F(MeshUri, ThatLeadsNowhereSaysWhy) {
 }
 
 }  // namespace
-}  // namespace sidestep::imports
+}  // namespace sidestep::imports::mesh_uri_test

@@ -13,7 +13,7 @@
 #include "sidestep/core/input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::imports {
+namespace sidestep::imports::moveit_files_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -174,4 +174,4 @@ TEST(FreeName, IsFitForAScenarioAndNotTaken) {
 }
 
 }  // namespace
-}  // namespace sidestep::imports
+}  // namespace sidestep::imports::moveit_files_test

@@ -10,7 +10,7 @@
 #include "sidestep/sim/robot_agreement.h"
 #include "sidestep/sim/robot_solids.h"
 
-namespace sidestep::imports {
+namespace sidestep::imports::panda_cover_test {
 namespace {
 
 const std::string kModels = SIDESTEP_SOURCE_DIR "/models";
@@ -66,4 +66,4 @@ TEST(CoveredPanda, IsThePandaWithOtherSpheres) {
 }
 
 }  // namespace
-}  // namespace sidestep::imports
+}  // namespace sidestep::imports::panda_cover_test

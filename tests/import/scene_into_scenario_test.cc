@@ -10,7 +10,7 @@
 #include "sidestep/import/draft_scenario.h"
 #include "sidestep/import/free_space.h"
 
-namespace sidestep::imports {
+namespace sidestep::imports::scene_into_scenario_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -126,4 +126,4 @@ TEST_F(SceneIntoScenario, RefusesWhatNamesNoWholeTask) {
 }
 
 }  // namespace
-}  // namespace sidestep::imports
+}  // namespace sidestep::imports::scene_into_scenario_test

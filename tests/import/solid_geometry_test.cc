@@ -16,7 +16,7 @@
 #include "tests/import/sample_meshes.h"
 #include "tests/support/random_points.h"
 
-namespace sidestep::imports {
+namespace sidestep::imports::solid_geometry_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -200,4 +200,4 @@ TEST(FindUncovered, BoundsWhatDensePointsShow) {
 }
 
 }  // namespace
-}  // namespace sidestep::imports
+}  // namespace sidestep::imports::solid_geometry_test

@@ -4,7 +4,7 @@
 
 #include "sidestep/import/home_candidates.h"
 
-namespace sidestep::imports {
+namespace sidestep::imports::sphere_roles_test {
 namespace {
 
 // An upright post with an arm of 0.5 m that swings up and down at its top, 0.4 m high, and a hand
@@ -90,4 +90,4 @@ TEST(Home, IsLookedForWithinTheLimitsAndAboveTheGroundFirst) {
 }
 
 }  // namespace
-}  // namespace sidestep::imports
+}  // namespace sidestep::imports::sphere_roles_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace sidestep::imports {
+namespace sidestep::imports::triangle_mesh_test {
 namespace {
 
 TriangleMesh Tetrahedron() {
@@ -32,4 +32,4 @@ TEST(TriangleMesh, ThatIsInsideOutHasANegativeVolume) {
 }
 
 }  // namespace
-}  // namespace sidestep::imports
+}  // namespace sidestep::imports::triangle_mesh_test

@@ -14,7 +14,7 @@
 #include "sidestep/planner/limit_use.h"
 #include "tests/support/planar_arm.h"
 
-namespace sidestep::planner {
+namespace sidestep::planner::braking_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -153,4 +153,4 @@ TEST(Braking, IsFollowedByTheTrackerToTheMillimetre) {
 }
 
 }  // namespace
-}  // namespace sidestep::planner
+}  // namespace sidestep::planner::braking_test

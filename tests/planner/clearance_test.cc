@@ -18,7 +18,7 @@
 #include "sidestep/sdf/map/distance_transform.h"
 #include "sidestep/sdf/map/object_field.h"
 
-namespace sidestep::planner {
+namespace sidestep::planner::clearance_test {
 namespace {
 
 constexpr double kClamp_m = 0.35;
@@ -116,4 +116,4 @@ TEST(MeasureClearance, SaysSoOfJointsThatTurnAsFarAsTheyLike) {
 }
 
 }  // namespace
-}  // namespace sidestep::planner
+}  // namespace sidestep::planner::clearance_test

@@ -22,7 +22,7 @@
 #include "tests/support/jacobian_check.h"
 #include "tests/support/planar_arm.h"
 
-namespace sidestep::planner {
+namespace sidestep::planner::costs_test {
 namespace {
 
 constexpr double kStep_s = 0.1;
@@ -277,4 +277,4 @@ TEST(MidVelocityLimitCost, IsTheExcessOfTheCubicInTheMiddle) {
 }
 
 }  // namespace
-}  // namespace sidestep::planner
+}  // namespace sidestep::planner::costs_test

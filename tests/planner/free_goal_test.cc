@@ -12,7 +12,7 @@
 #include "tests/support/ball_field.h"
 #include "tests/support/planar_arm.h"
 
-namespace sidestep::planner {
+namespace sidestep::planner::free_goal_test {
 namespace {
 
 const EpisodeTime kThen(2.5);
@@ -112,4 +112,4 @@ TEST(PlannersThatSearch, WaitBesideAGoalThatIsBlockedAndSaySo) {
 }
 
 }  // namespace
-}  // namespace sidestep::planner
+}  // namespace sidestep::planner::free_goal_test

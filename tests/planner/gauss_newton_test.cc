@@ -13,7 +13,7 @@
 #include "tests/support/ball_field.h"
 #include "tests/support/planar_arm.h"
 
-namespace sidestep::planner {
+namespace sidestep::planner::gauss_newton_test {
 namespace {
 
 constexpr int kNumStates = 9;
@@ -199,4 +199,4 @@ TEST_F(GaussNewtonTest, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace sidestep::planner
+}  // namespace sidestep::planner::gauss_newton_test

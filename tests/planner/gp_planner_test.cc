@@ -8,7 +8,7 @@
 #include "tests/support/ball_field.h"
 #include "tests/support/planar_arm.h"
 
-namespace sidestep::planner {
+namespace sidestep::planner::gp_planner_test {
 namespace {
 
 PlannerSettings WithoutLimits() {
@@ -136,4 +136,4 @@ TEST_F(GpPlannerTest, AWarmStartFromItsOwnPlanChangesLittleAndCostsLittle) {
 }
 
 }  // namespace
-}  // namespace sidestep::planner
+}  // namespace sidestep::planner::gp_planner_test

@@ -6,7 +6,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-namespace sidestep::planner {
+namespace sidestep::planner::gp_trajectory_test {
 namespace {
 
 class GpOfInterval : public ::testing::TestWithParam<double> {};
@@ -86,4 +86,4 @@ TEST(GpCost, OfASingleStateIsZero) {
 }
 
 }  // namespace
-}  // namespace sidestep::planner
+}  // namespace sidestep::planner::gp_trajectory_test

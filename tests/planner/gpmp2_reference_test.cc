@@ -18,7 +18,7 @@
 #include "sidestep/planner/planner.h"
 #include "sidestep/robot/robot_model.h"
 
-namespace sidestep::planner {
+namespace sidestep::planner::gpmp2_reference_test {
 namespace {
 
 using bench::gpmp2_reference::kNumStates;
@@ -203,4 +203,4 @@ TEST_F(Gpmp2Reference, FastSolutionsAreNoWorse) {
 }
 
 }  // namespace
-}  // namespace sidestep::planner
+}  // namespace sidestep::planner::gpmp2_reference_test

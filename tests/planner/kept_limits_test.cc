@@ -9,7 +9,7 @@
 #include "tests/support/ball_field.h"
 #include "tests/support/planar_arm.h"
 
-namespace sidestep::planner {
+namespace sidestep::planner::kept_limits_test {
 namespace {
 
 struct Case {
@@ -65,4 +65,4 @@ INSTANTIATE_TEST_SUITE_P(OfPlannersThatSearch, KeptLimits,
                                            Case{"gpmp_fast", 0.05, 1}));
 
 }  // namespace
-}  // namespace sidestep::planner
+}  // namespace sidestep::planner::kept_limits_test

@@ -13,7 +13,7 @@
 #include "tests/support/ball_field.h"
 #include "tests/support/planar_arm.h"
 
-namespace sidestep::planner {
+namespace sidestep::planner::motion_test {
 namespace {
 
 PlanRequest Request() {
@@ -185,4 +185,4 @@ TEST(LimitUse, IsThatOfTheCubicBetweenItsStates) {
 }
 
 }  // namespace
-}  // namespace sidestep::planner
+}  // namespace sidestep::planner::motion_test

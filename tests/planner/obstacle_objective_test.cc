@@ -18,7 +18,7 @@
 #include "tests/support/ball_field.h"
 #include "tests/support/random_points.h"
 
-namespace sidestep::planner {
+namespace sidestep::planner::obstacle_objective_test {
 namespace {
 
 constexpr double kClamp_m = 0.35;
@@ -184,4 +184,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return test.param.name; });
 
 }  // namespace
-}  // namespace sidestep::planner
+}  // namespace sidestep::planner::obstacle_objective_test

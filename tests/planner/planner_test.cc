@@ -15,7 +15,7 @@
 #include "tests/support/ball_field.h"
 #include "tests/support/planar_arm.h"
 
-namespace sidestep::planner {
+namespace sidestep::planner::planner_test {
 namespace {
 
 using Answer = std::function<PlanAnswer(const PlanRequest&, PlanJudge&)>;
@@ -202,4 +202,4 @@ TEST(Planner, HasTimedOutIfItsBudgetWasSpentWithoutAPlan) {
 }
 
 }  // namespace
-}  // namespace sidestep::planner
+}  // namespace sidestep::planner::planner_test

@@ -18,7 +18,7 @@
 #include "tests/support/moving_ball_world.h"
 #include "tests/support/planar_arm.h"
 
-namespace sidestep::planner {
+namespace sidestep::planner::replanner_test {
 namespace {
 
 const Eigen::Vector2d kStart(-1.1, 0.3), kGoal(1.2, -0.2);
@@ -723,4 +723,4 @@ TEST(Replanner, RefusesOptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace sidestep::planner
+}  // namespace sidestep::planner::replanner_test

@@ -16,7 +16,7 @@
 #include "tests/support/ball_field.h"
 #include "tests/support/planar_arm.h"
 
-namespace sidestep::planner {
+namespace sidestep::planner::seeded_planner_test {
 namespace {
 
 constexpr int kIterations = 3;  // of each solve
@@ -266,4 +266,4 @@ TEST(SeededPlanners, FindTheSameWithABudgetThatIsNotSpent) {
 }
 
 }  // namespace
-}  // namespace sidestep::planner
+}  // namespace sidestep::planner::seeded_planner_test

@@ -20,7 +20,7 @@
 #include "sidestep/robot/variant_names.h"
 #include "tests/support/ball_field.h"
 
-namespace sidestep::planner {
+namespace sidestep::planner::self_clearance_test {
 namespace {
 
 const std::string kModels = SIDESTEP_SOURCE_DIR "/models";
@@ -171,4 +171,4 @@ INSTANTIATE_TEST_SUITE_P(Models, SelfContact, ::testing::ValuesIn(RobotsAndVaria
                          });
 
 }  // namespace
-}  // namespace sidestep::planner
+}  // namespace sidestep::planner::self_clearance_test

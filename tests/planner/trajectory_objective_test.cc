@@ -23,7 +23,7 @@
 #include "tests/support/ball_field.h"
 #include "tests/support/planar_arm.h"
 
-namespace sidestep::planner {
+namespace sidestep::planner::trajectory_objective_test {
 namespace {
 
 struct Case {
@@ -246,4 +246,4 @@ INSTANTIATE_TEST_SUITE_P(Problems, TrajectoryObjectiveOf,
                          [](const auto& test) { return test.param.name; });
 
 }  // namespace
-}  // namespace sidestep::planner
+}  // namespace sidestep::planner::trajectory_objective_test

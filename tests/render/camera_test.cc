@@ -9,7 +9,7 @@
 
 #include "tests/support/random_points.h"
 
-namespace sidestep::render {
+namespace sidestep::render::camera_test {
 namespace {
 
 // Where a camera sees points: tangents to the right and up, one column a point.
@@ -67,4 +67,4 @@ TEST(FitCamera, LooksInTheDirectionItIsTold) {
 }
 
 }  // namespace
-}  // namespace sidestep::render
+}  // namespace sidestep::render::camera_test

@@ -7,7 +7,7 @@
 
 #include "tests/render/sample_recording.h"
 
-namespace sidestep::render {
+namespace sidestep::render::captions_test {
 namespace {
 
 TEST(Captions, NameWhatThePlannerWasTold) {
@@ -129,4 +129,4 @@ TEST(Captions, AreSilentAboutWhatWasNotRecorded) {
 }
 
 }  // namespace
-}  // namespace sidestep::render
+}  // namespace sidestep::render::captions_test

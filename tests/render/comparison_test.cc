@@ -11,7 +11,7 @@
 #include "sidestep/core/input_error.h"
 #include "tests/render/sample_recording.h"
 
-namespace sidestep::render {
+namespace sidestep::render::comparison_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -255,4 +255,4 @@ TEST(Comparison, RefusesWhatCannotBeDrawn) {
 }
 
 }  // namespace
-}  // namespace sidestep::render
+}  // namespace sidestep::render::comparison_test

@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-namespace sidestep::render {
+namespace sidestep::render::font_test {
 namespace {
 
 constexpr Color kWhite = {255, 255, 255};
@@ -94,4 +94,4 @@ TEST(Font, KnowsWhichTextsItShowsWhole) {
 }
 
 }  // namespace
-}  // namespace sidestep::render
+}  // namespace sidestep::render::font_test

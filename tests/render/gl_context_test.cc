@@ -8,7 +8,7 @@
 
 #include "sidestep/core/input_error.h"
 
-namespace sidestep::render {
+namespace sidestep::render::gl_context_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -63,4 +63,4 @@ TEST_F(GlEnvironment, DrawsNothingWhereItIsForbidden) {
 }
 
 }  // namespace
-}  // namespace sidestep::render
+}  // namespace sidestep::render::gl_context_test

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace sidestep::render {
+namespace sidestep::render::image_test {
 namespace {
 
 constexpr Color kBlack = {0, 0, 0}, kRed = {200, 10, 20}, kWhite = {255, 255, 255};
@@ -67,4 +67,4 @@ TEST(Image, PastesWhatFits) {
 }
 
 }  // namespace
-}  // namespace sidestep::render
+}  // namespace sidestep::render::image_test

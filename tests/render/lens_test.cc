@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace sidestep::render {
+namespace sidestep::render::lens_test {
 namespace {
 
 robot::CameraIntrinsics SmallCamera() {
@@ -71,4 +71,4 @@ TEST(Lens, RefusesToFoldThePicture) {
 }
 
 }  // namespace
-}  // namespace sidestep::render
+}  // namespace sidestep::render::lens_test

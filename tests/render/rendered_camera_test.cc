@@ -10,7 +10,7 @@
 #include "sidestep/sim/mujoco_model.h"
 #include "sidestep/sim/world_xml.h"
 
-namespace sidestep::render {
+namespace sidestep::render::rendered_camera_test {
 namespace {
 
 // A world in which a dark box goes past a small camera, one metre away, at a speed to its right.
@@ -122,4 +122,4 @@ TEST(RenderedCamera, HasARateALatencyAndLostFrames) {
 }
 
 }  // namespace
-}  // namespace sidestep::render
+}  // namespace sidestep::render::rendered_camera_test

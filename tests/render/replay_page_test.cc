@@ -15,7 +15,7 @@
 #include "sidestep/render/timeline.h"
 #include "tests/render/sample_recording.h"
 
-namespace sidestep::render {
+namespace sidestep::render::replay_page_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -172,4 +172,4 @@ TEST(ReplayScripts, CannotEndTheirElements) {
 }
 
 }  // namespace
-}  // namespace sidestep::render
+}  // namespace sidestep::render::replay_page_test

@@ -9,7 +9,7 @@
 #include "sidestep/scenarios/scenario.h"
 #include "tests/render/sample_recording.h"
 
-namespace sidestep::render {
+namespace sidestep::render::timeline_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -107,4 +107,4 @@ TEST(Timeline, KnowsWhichPlanIsInForce) {
 }
 
 }  // namespace
-}  // namespace sidestep::render
+}  // namespace sidestep::render::timeline_test

@@ -11,7 +11,7 @@
 #include "sidestep/core/input_error.h"
 #include "tests/render/sample_recording.h"
 
-namespace sidestep::render {
+namespace sidestep::render::trace_model_test {
 namespace {
 
 using ::testing::StartsWith;
@@ -126,4 +126,4 @@ TEST(TraceModel, RefusesRecordingsItCannotDraw) {
 }
 
 }  // namespace
-}  // namespace sidestep::render
+}  // namespace sidestep::render::trace_model_test

@@ -17,7 +17,7 @@
 #include "tests/support/bytes_of.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::render {
+namespace sidestep::render::video_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -216,4 +216,4 @@ TEST_F(ComparisonVideo, StillShowsTheTellingMomentUnlessAsked) {
 }
 
 }  // namespace
-}  // namespace sidestep::render
+}  // namespace sidestep::render::video_test

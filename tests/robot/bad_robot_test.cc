@@ -10,7 +10,7 @@
 #include "sidestep/robot/robot_model.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::robot {
+namespace sidestep::robot::bad_robot_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -98,4 +98,4 @@ TEST_F(ModelsFolder, RefusesAHugeFile) {
 }
 
 }  // namespace
-}  // namespace sidestep::robot
+}  // namespace sidestep::robot::bad_robot_test

@@ -6,7 +6,7 @@
 
 #include "sidestep/core/random.h"
 
-namespace sidestep::robot {
+namespace sidestep::robot::camera_image_test {
 namespace {
 
 CameraIntrinsics DistortedCamera() {
@@ -44,4 +44,4 @@ TEST(CameraIntrinsics, FindTheRayOfEveryPixel) {
 }
 
 }  // namespace
-}  // namespace sidestep::robot
+}  // namespace sidestep::robot::camera_image_test

@@ -6,7 +6,7 @@
 #include "sidestep/robot/fci/errors.h"
 #include "sidestep/robot/fci/wire.h"
 
-namespace sidestep::robot::fci {
+namespace sidestep::robot::fci::fci_wire_test {
 namespace {
 
 template <typename Value>
@@ -112,4 +112,4 @@ TEST(Errors, HaveTheirPlaces) {
 }
 
 }  // namespace
-}  // namespace sidestep::robot::fci
+}  // namespace sidestep::robot::fci::fci_wire_test

@@ -13,7 +13,7 @@
 #include "sidestep/robot/robot_model.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::robot {
+namespace sidestep::robot::joint_tree_test {
 namespace {
 
 const std::string kFolder = SIDESTEP_SOURCE_DIR "/tests/data/joint_tree/";
@@ -156,4 +156,4 @@ TEST(DhRows, AreJointsAboutZAndWhatIsFixedToThem) {
 }
 
 }  // namespace
-}  // namespace sidestep::robot
+}  // namespace sidestep::robot::joint_tree_test

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace sidestep::robot {
+namespace sidestep::robot::robot_model_test {
 namespace {
 
 constexpr double kPi = 3.141592653589793;
@@ -115,4 +115,4 @@ TEST(RobotModel, RefusesAConfigurationOfTheWrongShape) {
 }
 
 }  // namespace
-}  // namespace sidestep::robot
+}  // namespace sidestep::robot::robot_model_test

@@ -10,7 +10,7 @@
 #include "sidestep/robot/variant_names.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::robot {
+namespace sidestep::robot::variant_test {
 namespace {
 
 // models/panda/robot.yaml in a folder of its own, and variants beside it.
@@ -125,4 +125,4 @@ TEST(ModelName, IsAFolderAndMaybeAVariant) {
 }
 
 }  // namespace
-}  // namespace sidestep::robot
+}  // namespace sidestep::robot::variant_test

@@ -12,7 +12,7 @@
 #include "sidestep/scenarios/scenario.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::scenarios {
+namespace sidestep::scenarios::bad_scenario_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -95,4 +95,4 @@ TEST_F(ScratchFile, BinaryIsRefusedAtItsLine) {
 }
 
 }  // namespace
-}  // namespace sidestep::scenarios
+}  // namespace sidestep::scenarios::bad_scenario_test

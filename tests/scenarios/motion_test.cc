@@ -7,7 +7,7 @@
 
 #include "sidestep/scenarios/scenario.h"
 
-namespace sidestep::scenarios {
+namespace sidestep::scenarios::motion_test {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -270,4 +270,4 @@ TEST(ScaleSpeeds, RefusesWhatNoScenarioFileMaySay) {
 }
 
 }  // namespace
-}  // namespace sidestep::scenarios
+}  // namespace sidestep::scenarios::motion_test

@@ -14,7 +14,7 @@
 #include "sidestep/scenarios/scenario.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::scenarios {
+namespace sidestep::scenarios::recorded_motion_test {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -266,4 +266,4 @@ TEST(TrackFileOfAText, IsRefusedBecauseATextStandsNowhere) {
 }
 
 }  // namespace
-}  // namespace sidestep::scenarios
+}  // namespace sidestep::scenarios::recorded_motion_test

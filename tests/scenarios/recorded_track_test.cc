@@ -11,7 +11,7 @@
 
 #include "sidestep/core/random.h"
 
-namespace sidestep::scenarios {
+namespace sidestep::scenarios::recorded_track_test {
 namespace {
 
 using Rows = std::vector<std::vector<double>>;
@@ -279,4 +279,4 @@ TEST(RecordedTrack, NeedsTwoSamples) {
 }
 
 }  // namespace
-}  // namespace sidestep::scenarios
+}  // namespace sidestep::scenarios::recorded_track_test

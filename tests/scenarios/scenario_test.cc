@@ -12,7 +12,7 @@
 #include "sidestep/core/input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::scenarios {
+namespace sidestep::scenarios::scenario_test {
 namespace {
 
 const std::string kFolder = SIDESTEP_SOURCE_DIR "/scenarios";
@@ -376,4 +376,4 @@ TEST(WrongValue, IsToldAtTheNearestLineThatThereIs) {
 }
 
 }  // namespace
-}  // namespace sidestep::scenarios
+}  // namespace sidestep::scenarios::scenario_test

@@ -11,7 +11,7 @@
 
 #include "sidestep/core/input_error.h"
 
-namespace sidestep::scenarios {
+namespace sidestep::scenarios::variations_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -265,4 +265,4 @@ TEST(Variations, ThatAreNoRangesAreRefused) {
 }
 
 }  // namespace
-}  // namespace sidestep::scenarios
+}  // namespace sidestep::scenarios::variations_test

@@ -11,7 +11,7 @@
 #include "sidestep/sdf/tracking/object_tracker.h"
 #include "tests/sdf/box_scene.h"
 
-namespace sidestep::sdf {
+namespace sidestep::sdf::behaviour_test {
 namespace {
 
 using ::testing::Contains;
@@ -213,4 +213,4 @@ TEST(AThingUnseenForLong, IsLostAndComesBackAsAnother) {
 }
 
 }  // namespace
-}  // namespace sidestep::sdf
+}  // namespace sidestep::sdf::behaviour_test

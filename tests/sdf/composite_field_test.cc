@@ -17,7 +17,7 @@
 #include "tests/sdf/box_scene.h"
 #include "tests/support/random_points.h"
 
-namespace sidestep::sdf {
+namespace sidestep::sdf::composite_field_test {
 namespace {
 
 constexpr double kCell_m = 0.04;
@@ -365,4 +365,4 @@ TEST(DenseComposite, RefusesObjectsItCannotCopyCellByCell) {
 }
 
 }  // namespace
-}  // namespace sidestep::sdf
+}  // namespace sidestep::sdf::composite_field_test

@@ -12,7 +12,7 @@
 
 #include "sidestep/core/random.h"
 
-namespace sidestep::sdf {
+namespace sidestep::sdf::distance_transform_test {
 namespace {
 
 using ::testing::Each;
@@ -164,4 +164,4 @@ TEST(SignedDistance, DoesNotOverflowInTheLargestGridItAccepts) {
 }
 
 }  // namespace
-}  // namespace sidestep::sdf
+}  // namespace sidestep::sdf::distance_transform_test

@@ -11,7 +11,7 @@
 #include "sidestep/sdf/prediction/registry.h"
 #include "tests/support/random_points.h"
 
-namespace sidestep::sdf {
+namespace sidestep::sdf::every_predictor_test {
 namespace {
 
 TrackedObject SeenAt(const std::vector<double>& times_s,
@@ -159,4 +159,4 @@ TEST(PredictorRegistry, NamesWhatThereIsWhenItIsAskedForSomethingElse) {
 }
 
 }  // namespace
-}  // namespace sidestep::sdf
+}  // namespace sidestep::sdf::every_predictor_test

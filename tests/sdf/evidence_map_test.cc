@@ -8,7 +8,7 @@
 
 #include "sidestep/core/random.h"
 
-namespace sidestep::sdf {
+namespace sidestep::sdf::evidence_map_test {
 namespace {
 
 const GridSpec kGrid = {{0.05, -0.95, -0.95}, 0.1, {30, 20, 20}};
@@ -254,4 +254,4 @@ TEST(EvidenceMap, RefusesWhatIsOutOfItsBounds) {
 }
 
 }  // namespace
-}  // namespace sidestep::sdf
+}  // namespace sidestep::sdf::evidence_map_test

@@ -14,7 +14,7 @@
 #include "sidestep/sdf/map/object_field.h"
 #include "tests/support/random_points.h"
 
-namespace sidestep::sdf {
+namespace sidestep::sdf::field_accuracy_test {
 namespace {
 
 constexpr double kCell_m = 0.04;
@@ -90,4 +90,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
-}  // namespace sidestep::sdf
+}  // namespace sidestep::sdf::field_accuracy_test

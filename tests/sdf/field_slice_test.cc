@@ -22,7 +22,7 @@
 #include "tests/support/ball_field.h"
 #include "tests/support/random_points.h"
 
-namespace sidestep::sdf {
+namespace sidestep::sdf::field_slice_test {
 namespace {
 
 constexpr double kCell_m = 0.05, kClamp_m = 0.3;
@@ -131,4 +131,4 @@ INSTANTIATE_TEST_SUITE_P(Every, FieldSliceOf, ::testing::ValuesIn(Cases()),
                          [](const auto& test) { return test.param.name; });
 
 }  // namespace
-}  // namespace sidestep::sdf
+}  // namespace sidestep::sdf::field_slice_test

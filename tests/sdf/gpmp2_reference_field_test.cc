@@ -12,7 +12,7 @@
 #include "sidestep/sdf/grid_field.h"
 #include "sidestep/sdf/map/distance_transform.h"
 
-namespace sidestep::sdf {
+namespace sidestep::sdf::gpmp2_reference_field_test {
 namespace {
 
 struct CellBox {
@@ -98,4 +98,4 @@ TEST(Gpmp2ReferenceField, AnswersThePublishedQueries) {
 }
 
 }  // namespace
-}  // namespace sidestep::sdf
+}  // namespace sidestep::sdf::gpmp2_reference_field_test

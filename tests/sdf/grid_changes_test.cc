@@ -8,7 +8,7 @@
 #include "sidestep/core/random.h"
 #include "sidestep/sdf/map/static_map.h"
 
-namespace sidestep::sdf {
+namespace sidestep::sdf::grid_changes_test {
 namespace {
 
 // Turns cells of a few places over, or none.
@@ -60,4 +60,4 @@ TEST(StaticMap, HasTheFieldOfAllWhenItIsToldWhatHasChanged) {
 }
 
 }  // namespace
-}  // namespace sidestep::sdf
+}  // namespace sidestep::sdf::grid_changes_test

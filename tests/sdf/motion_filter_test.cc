@@ -17,7 +17,7 @@
 #include "sidestep/sdf/prediction/kalman_turn.h"
 #include "sidestep/sdf/prediction/registry.h"
 
-namespace sidestep::sdf {
+namespace sidestep::sdf::motion_filter_test {
 namespace {
 
 constexpr double kRate_hz = 30, kSigma_m = 0.01;
@@ -242,4 +242,4 @@ TEST(Imm, IsNearlyAsGoodAsTheFilterWhoseMotionItSees) {
 }
 
 }  // namespace
-}  // namespace sidestep::sdf
+}  // namespace sidestep::sdf::motion_filter_test

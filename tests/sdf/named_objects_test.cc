@@ -5,7 +5,7 @@
 #include "sidestep/sdf/prediction/registry.h"
 #include "sidestep/sdf/world_model.h"
 
-namespace sidestep::sdf {
+namespace sidestep::sdf::named_objects_test {
 namespace {
 
 ObjectObservation Seen(const std::string& id, double t_s, const Pose& X_WO) {
@@ -129,4 +129,4 @@ TEST(WorldModel, TakesNamedObjectsForSolidsWhereItDoesNotPredict) {
 }
 
 }  // namespace
-}  // namespace sidestep::sdf
+}  // namespace sidestep::sdf::named_objects_test

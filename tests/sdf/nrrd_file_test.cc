@@ -12,7 +12,7 @@
 
 #include "sidestep/core/input_error.h"
 
-namespace sidestep::sdf {
+namespace sidestep::sdf::nrrd_file_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -82,4 +82,4 @@ TEST_F(NrrdFile, ThatCannotBeWrittenIsNamed) {
 }
 
 }  // namespace
-}  // namespace sidestep::sdf
+}  // namespace sidestep::sdf::nrrd_file_test

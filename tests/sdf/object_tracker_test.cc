@@ -17,7 +17,7 @@
 #include "sidestep/sdf/map/grid_changes.h"
 #include "tests/sdf/box_scene.h"
 
-namespace sidestep::sdf {
+namespace sidestep::sdf::object_tracker_test {
 namespace {
 
 using ::testing::IsEmpty;
@@ -340,4 +340,4 @@ TEST(ObjectTracker, FollowsAThingUpToItsGateAndNoFaster) {
 }
 
 }  // namespace
-}  // namespace sidestep::sdf
+}  // namespace sidestep::sdf::object_tracker_test

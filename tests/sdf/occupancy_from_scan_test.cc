@@ -9,7 +9,7 @@
 #include "sidestep/core/random.h"
 #include "tests/sdf/box_scene.h"
 
-namespace sidestep::sdf {
+namespace sidestep::sdf::occupancy_from_scan_test {
 namespace {
 
 TEST(OccupancyFromScan, GivesBackTheCellsWhoseCentresWereScanned) {
@@ -102,4 +102,4 @@ TEST(OccupancyFromScan, FillsNothingThatOnlyEarlierScansShowed) {
 }
 
 }  // namespace
-}  // namespace sidestep::sdf
+}  // namespace sidestep::sdf::occupancy_from_scan_test

@@ -15,7 +15,7 @@
 #include "tests/sdf/only_target.h"
 #include "tests/support/random_points.h"
 
-namespace sidestep::sdf {
+namespace sidestep::sdf::placed_composite_test {
 namespace {
 
 constexpr double kCell_m = 0.05;
@@ -251,4 +251,4 @@ TEST(AlignedVector, BeginsAtACacheLine) {
 }
 
 }  // namespace
-}  // namespace sidestep::sdf
+}  // namespace sidestep::sdf::placed_composite_test

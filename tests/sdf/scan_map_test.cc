@@ -7,7 +7,7 @@
 #include "sidestep/sdf/map/cells_on_line.h"
 #include "tests/support/random_points.h"
 
-namespace sidestep::sdf {
+namespace sidestep::sdf::scan_map_test {
 namespace {
 
 const GridSpec kGrid = {{-0.95, -0.95, -0.95}, 0.1, {20, 20, 20}};
@@ -225,4 +225,4 @@ TEST(FillObjects, FillsTheCellsOfATurnedShapeByTheRule) {
 }
 
 }  // namespace
-}  // namespace sidestep::sdf
+}  // namespace sidestep::sdf::scan_map_test

@@ -11,7 +11,7 @@
 #include "sidestep/sdf/grid_field.h"
 #include "tests/support/random_points.h"
 
-namespace sidestep::sdf {
+namespace sidestep::sdf::sdf_grid_test {
 namespace {
 
 // 0.04 and -1 are not exact in binary: the far centres are where rounding would show.
@@ -171,4 +171,4 @@ TEST(GridField, RefusesToClampAtNothing) {
 }
 
 }  // namespace
-}  // namespace sidestep::sdf
+}  // namespace sidestep::sdf::sdf_grid_test

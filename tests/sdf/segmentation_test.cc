@@ -11,7 +11,7 @@
 
 #include "sidestep/core/random.h"
 
-namespace sidestep::sdf {
+namespace sidestep::sdf::segmentation_test {
 namespace {
 
 // Brute force: every pair of filled cells that touch gets the same label, until nothing changes.
@@ -171,4 +171,4 @@ TEST(Segmentation, CutsOutAComponentWhereItStandsAndWithoutItsNeighbours) {
 }
 
 }  // namespace
-}  // namespace sidestep::sdf
+}  // namespace sidestep::sdf::segmentation_test

@@ -9,7 +9,7 @@
 
 #include "sidestep/core/random.h"
 
-namespace sidestep::sdf {
+namespace sidestep::sdf::shape_field_test {
 namespace {
 
 constexpr double kClamp_m = 0.5;
@@ -110,4 +110,4 @@ TEST(ShapeField, RefusesAClampOfNothingAndAShapeWithoutAPose) {
 }
 
 }  // namespace
-}  // namespace sidestep::sdf
+}  // namespace sidestep::sdf::shape_field_test

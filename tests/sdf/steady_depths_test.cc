@@ -7,7 +7,7 @@
 
 #include "sidestep/core/random.h"
 
-namespace sidestep::sdf {
+namespace sidestep::sdf::steady_depths_test {
 namespace {
 
 constexpr double kDeviation_m = 0.02;
@@ -90,4 +90,4 @@ TEST(SteadyDepths, LeaveWhatIsExactAsItIs) {
 }
 
 }  // namespace
-}  // namespace sidestep::sdf
+}  // namespace sidestep::sdf::steady_depths_test

@@ -10,7 +10,7 @@
 #include "sidestep/core/random.h"
 #include "sidestep/sdf/world_model.h"
 
-namespace sidestep::sdf {
+namespace sidestep::sdf::surface_world_test {
 namespace {
 
 constexpr double kPeriod_s = 1.0 / 30;
@@ -120,4 +120,4 @@ TEST(SurfaceWorld, SeesWhatComesStraightAtTheCamera) {
 }
 
 }  // namespace
-}  // namespace sidestep::sdf
+}  // namespace sidestep::sdf::surface_world_test

@@ -12,7 +12,7 @@
 #include "sidestep/sdf/tracking/object_tracker.h"
 #include "tests/sdf/box_scene.h"
 
-namespace sidestep::sdf {
+namespace sidestep::sdf::turning_box_test {
 namespace {
 
 constexpr double kRate_hz = 30;
@@ -71,4 +71,4 @@ INSTANTIATE_TEST_SUITE_P(EveryWay, ATurningBox, ::testing::ValuesIn(kTurnings),
                          [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
-}  // namespace sidestep::sdf
+}  // namespace sidestep::sdf::turning_box_test

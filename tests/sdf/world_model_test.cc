@@ -14,7 +14,7 @@
 #include "tests/sdf/box_scene.h"
 #include "tests/support/random_points.h"
 
-namespace sidestep::sdf {
+namespace sidestep::sdf::world_model_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -408,4 +408,4 @@ TEST(GrownObjects, GoOnToTheClampWithoutAJump) {
 }
 
 }  // namespace
-}  // namespace sidestep::sdf
+}  // namespace sidestep::sdf::world_model_test

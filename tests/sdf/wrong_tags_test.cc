@@ -10,7 +10,7 @@
 
 #include "sidestep/sdf/tracking/object_tracker.h"
 
-namespace sidestep::sdf {
+namespace sidestep::sdf::wrong_tags_test {
 namespace {
 
 // Over 400 seeds: wrong_tags_seeds_test, which is slow.
@@ -125,4 +125,4 @@ TEST(NamedObjects, CoastForAsLongAsTheyMay) {
 }
 
 }  // namespace
-}  // namespace sidestep::sdf
+}  // namespace sidestep::sdf::wrong_tags_test

@@ -13,7 +13,7 @@
 #include "tests/sim/small_model.h"
 #include "tests/support/random_points.h"
 
-namespace sidestep::sim {
+namespace sidestep::sim::cell_touch_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -108,4 +108,4 @@ TEST(CubeTouch, DoesNotCountCubesThatOnlyShareAFace) {
 }
 
 }  // namespace
-}  // namespace sidestep::sim
+}  // namespace sidestep::sim::cell_touch_test

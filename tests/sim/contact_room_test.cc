@@ -10,7 +10,7 @@
 #include "tests/sim/small_model.h"
 #include "tests/sim/two_link.h"
 
-namespace sidestep::sim {
+namespace sidestep::sim::contact_room_test {
 namespace {
 
 // An arm across which three posts sweep at once.
@@ -78,4 +78,4 @@ TEST(ContactRoom, IsMissedOnlyWhereContactsWereDropped) {
 }
 
 }  // namespace
-}  // namespace sidestep::sim
+}  // namespace sidestep::sim::contact_room_test

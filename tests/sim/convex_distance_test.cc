@@ -9,7 +9,7 @@
 #include "tests/sim/small_model.h"
 #include "tests/support/random_points.h"
 
-namespace sidestep::sim {
+namespace sidestep::sim::convex_distance_test {
 namespace {
 
 using Core = ConvexSolid::Core;
@@ -108,4 +108,4 @@ TEST(ConvexDistance, OfAHullIsThatOfTheBoxWhereverItsFrameIs) {
 }
 
 }  // namespace
-}  // namespace sidestep::sim
+}  // namespace sidestep::sim::convex_distance_test

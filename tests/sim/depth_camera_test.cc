@@ -5,7 +5,7 @@
 #include "sidestep/sim/simulation.h"
 #include "tests/sim/two_link.h"
 
-namespace sidestep::sim {
+namespace sidestep::sim::depth_camera_test {
 namespace {
 
 TEST(DepthCamera, NamesTheRayOfEachPointWhateverElseItSees) {
@@ -48,4 +48,4 @@ TEST(DepthCamera, NamesTheRayOfEachPointWhateverElseItSees) {
 }
 
 }  // namespace
-}  // namespace sidestep::sim
+}  // namespace sidestep::sim::depth_camera_test

@@ -9,7 +9,7 @@
 #include "sidestep/sim/fci/controller.h"
 #include "sidestep/sim/fci/motion_check.h"
 
-namespace sidestep::sim::fci {
+namespace sidestep::sim::fci::fci_motion_check_test {
 namespace {
 
 using robot::fci::Error;
@@ -184,4 +184,4 @@ TEST(Controller, RefusesATorqueThatJumps) {
 }
 
 }  // namespace
-}  // namespace sidestep::sim::fci
+}  // namespace sidestep::sim::fci::fci_motion_check_test

@@ -11,7 +11,7 @@
 #include "sidestep/sim/fci/packet_loss.h"
 #include "sidestep/sim/fci/reflexes.h"
 
-namespace sidestep::sim::fci {
+namespace sidestep::sim::fci::fci_parts_test {
 namespace {
 
 using robot::fci::Error;
@@ -305,4 +305,4 @@ INSTANTIATE_TEST_SUITE_P(
                   "f.yaml:2: faults[0].rate: must be 0 to 1"}));
 
 }  // namespace
-}  // namespace sidestep::sim::fci
+}  // namespace sidestep::sim::fci::fci_parts_test

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace sidestep::sim {
+namespace sidestep::sim::flying_pixels_test {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
@@ -44,4 +44,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
-}  // namespace sidestep::sim
+}  // namespace sidestep::sim::flying_pixels_test

@@ -9,7 +9,7 @@
 #include "sidestep/sim/world_xml.h"
 #include "tests/sim/two_link.h"
 
-namespace sidestep::sim {
+namespace sidestep::sim::foreign_model_test {
 namespace {
 
 std::string Times(int count, const std::string& text) {
@@ -129,4 +129,4 @@ TEST(ForeignModelText, MayBeAnyWorldThatWeWrite) {
 }
 
 }  // namespace
-}  // namespace sidestep::sim
+}  // namespace sidestep::sim::foreign_model_test

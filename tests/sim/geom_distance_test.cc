@@ -11,7 +11,7 @@
 #include "tests/sim/small_model.h"
 #include "tests/support/random_points.h"
 
-namespace sidestep::sim {
+namespace sidestep::sim::geom_distance_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -360,4 +360,4 @@ TEST(GeomDistance, SaysHowDeepAndWhereTwoSolidsTouch) {
 }
 
 }  // namespace
-}  // namespace sidestep::sim
+}  // namespace sidestep::sim::geom_distance_test

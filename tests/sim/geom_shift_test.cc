@@ -7,7 +7,7 @@
 #include "tests/sim/small_model.h"
 #include "tests/support/random_points.h"
 
-namespace sidestep::sim {
+namespace sidestep::sim::geom_shift_test {
 namespace {
 
 // A bar of 0.6 m, whose ends come furthest when it turns, and a floor.
@@ -62,4 +62,4 @@ TEST(GeomShift, KnowsNoBoundForAPlaneThatTurns) {
 }
 
 }  // namespace
-}  // namespace sidestep::sim
+}  // namespace sidestep::sim::geom_shift_test

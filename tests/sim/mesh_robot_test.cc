@@ -18,7 +18,7 @@
 #include "tests/support/bytes_of.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::sim {
+namespace sidestep::sim::mesh_robot_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -184,4 +184,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return test.param.name; });
 
 }  // namespace
-}  // namespace sidestep::sim
+}  // namespace sidestep::sim::mesh_robot_test

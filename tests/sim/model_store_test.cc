@@ -9,7 +9,7 @@
 
 #include "sidestep/core/input_error.h"
 
-namespace sidestep::sim {
+namespace sidestep::sim::model_store_test {
 namespace {
 
 std::string Swing(const std::string& mass) {
@@ -63,4 +63,4 @@ TEST(ModelStore, KeepsNothingOfWhatIsNoModel) {
 }
 
 }  // namespace
-}  // namespace sidestep::sim
+}  // namespace sidestep::sim::model_store_test

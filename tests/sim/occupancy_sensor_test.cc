@@ -7,7 +7,7 @@
 #include "sidestep/sim/simulation.h"
 #include "tests/sim/two_link.h"
 
-namespace sidestep::sim {
+namespace sidestep::sim::occupancy_sensor_test {
 namespace {
 
 scenarios::Scenario BusyScenario() {
@@ -84,4 +84,4 @@ TEST(OccupancySensor, SkipsCapturesThatWereMissed) {
 }
 
 }  // namespace
-}  // namespace sidestep::sim
+}  // namespace sidestep::sim::occupancy_sensor_test

@@ -6,7 +6,7 @@
 
 #include "sidestep/sim/simulation.h"
 
-namespace sidestep::sim {
+namespace sidestep::sim::panda_simulation_test {
 namespace {
 
 const std::string kModels = SIDESTEP_SOURCE_DIR "/models";
@@ -101,4 +101,4 @@ TEST(Panda, IsTouchedByTheHsrWhenItReachesAcrossTheWalkway) {
 }
 
 }  // namespace
-}  // namespace sidestep::sim
+}  // namespace sidestep::sim::panda_simulation_test

@@ -12,7 +12,7 @@
 #include "tests/sim/small_model.h"
 #include "tests/support/random_points.h"
 
-namespace sidestep::sim {
+namespace sidestep::sim::rasteriser_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -286,4 +286,4 @@ TEST(OccupancyRasteriser, LeavesOutRobotFloorAndPictures) {
 }
 
 }  // namespace
-}  // namespace sidestep::sim
+}  // namespace sidestep::sim::rasteriser_test

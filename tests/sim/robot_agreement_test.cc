@@ -16,7 +16,7 @@
 #include "tests/support/bytes_of.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::sim {
+namespace sidestep::sim::robot_agreement_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -125,4 +125,4 @@ TEST(RobotAgreement, HoldsForEveryRobotThatIsShipped) {
 }
 
 }  // namespace
-}  // namespace sidestep::sim
+}  // namespace sidestep::sim::robot_agreement_test

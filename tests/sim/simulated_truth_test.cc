@@ -9,7 +9,7 @@
 #include "sidestep/sim/simulation.h"
 #include "tests/sim/two_link.h"
 
-namespace sidestep::sim {
+namespace sidestep::sim::simulated_truth_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -245,4 +245,4 @@ TEST(SimulatedTruth, CallsTheRobotItselfWhenItsOwnLinksTouch) {
 }
 
 }  // namespace
-}  // namespace sidestep::sim
+}  // namespace sidestep::sim::simulated_truth_test

@@ -13,7 +13,7 @@
 #include "sidestep/core/input_error.h"
 #include "tests/sim/two_link.h"
 
-namespace sidestep::sim {
+namespace sidestep::sim::simulation_test {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -259,4 +259,4 @@ TEST(Simulation, SaysWhatOfTheScenarioDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace sidestep::sim
+}  // namespace sidestep::sim::simulation_test

@@ -17,7 +17,7 @@
 #include "tests/support/random_points.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::sim {
+namespace sidestep::sim::static_geoms_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -190,4 +190,4 @@ TEST(FootHeight, LeavesRoomBelowARobotOfWhichAllMoves) {
 }
 
 }  // namespace
-}  // namespace sidestep::sim
+}  // namespace sidestep::sim::static_geoms_test

@@ -15,7 +15,7 @@
 #include "sidestep/sim/simulation.h"
 #include "tests/sim/two_link.h"
 
-namespace sidestep::sim {
+namespace sidestep::sim::turning_obstacle_test {
 namespace {
 
 constexpr double kClamp_m = 0.3;
@@ -145,4 +145,4 @@ TEST(TurningObstacle, IsFollowedFromItsCellsAsOneThing) {
 }
 
 }  // namespace
-}  // namespace sidestep::sim
+}  // namespace sidestep::sim::turning_obstacle_test

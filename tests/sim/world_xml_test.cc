@@ -21,7 +21,7 @@
 #include "tests/support/random_points.h"
 #include "tests/support/temporary_folder.h"
 
-namespace sidestep::sim {
+namespace sidestep::sim::world_xml_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -333,4 +333,4 @@ TEST(WorldXml, KeepsPicturesThatMayTellMasses) {
 }
 
 }  // namespace
-}  // namespace sidestep::sim
+}  // namespace sidestep::sim::world_xml_test
