@@ -6,9 +6,12 @@
 #include <charconv>
 #include <string>
 
+#include "sidestep/core/parse_number.h"
+
 namespace sidestep::cli {
 
-/// A check for options: a number from `least` to `most`, both included. CLI::Range takes NaN.
+/// A check for options: a number from `least` to `most`, both included. CLI::Range takes NaN, and
+/// CLI11 reads 010 as eight.
 inline CLI::Validator NumberFrom(double least, double most) {
   const std::string range = fmt::format("from {:g} to {:g}", least, most);
   const auto check = [least, most, range](const std::string& word) {
@@ -17,7 +20,9 @@ inline CLI::Validator NumberFrom(double least, double most) {
     const auto parsed = std::from_chars(word.data(), end, value);
     const bool is_inside =
         parsed.ec == std::errc() && parsed.ptr == end && value >= least && value <= most;
-    return is_inside ? std::string() : "must be a number " + range + ", is '" + word + "'";
+    if (is_inside && !HasLeadingZeros(word)) return std::string();
+    return "must be a number " + range + (is_inside ? " without leading zeros" : "") + ", is '" +
+           word + "'";
   };
   return CLI::Validator(check, "", "number");
 }

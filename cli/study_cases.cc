@@ -72,8 +72,10 @@ std::optional<std::uint64_t> TakeSeed(const StudySpace& space, scenarios::Settin
   const std::string text = settings.extract(fixed).mapped();
   if (space.episodes > 0) throw InputError("--set seed", "is what --episodes varies");
   const auto seed = NumberIn<std::uint64_t>(text);
-  if (!seed) {
-    throw InputError("--set seed", "must be a whole number >= 0, is '" + text + "'");
+  if (!seed || HasLeadingZeros(text)) {
+    throw InputError("--set seed", std::string("must be a whole number ") +
+                                       (seed ? "without leading zeros" : ">= 0") + ", is '" + text +
+                                       "'");
   }
   return seed;
 }

@@ -18,4 +18,11 @@ std::optional<Number> NumberIn(std::string_view text) {
   return number;
 }
 
+/// Whether a whole number has zeros before it, "010": to some readers that is ten, to others eight.
+inline bool HasLeadingZeros(std::string_view text) {
+  if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
+  return text.size() > 1 && text.front() == '0' &&
+         text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
 }  // namespace sidestep

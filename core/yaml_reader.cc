@@ -12,6 +12,7 @@
 
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/joined.h"
+#include "sidestep/core/parse_number.h"
 #include "sidestep/core/text_file.h"
 #include "sidestep/core/utf8.h"
 #include "sidestep/core/yaml_tree.h"
@@ -138,6 +139,9 @@ struct YamlReader::Node {
       }
       FailAt(&at, key, "must be a number, is " + Quote(at.text));
     }
+    if (HasLeadingZeros(at.text)) {
+      FailAt(&at, key, "must be a number without leading zeros, is " + Quote(at.text));
+    }
     if (!std::isfinite(number)) FailAt(&at, key, "must be finite, is " + at.text);
     if (std::abs(number) > kLargestNumber) {
       FailAt(&at, key, "must be from -1e12 to 1e12, is " + at.text);
@@ -205,6 +209,9 @@ int YamlReader::GetInt(const std::string& key) const {
   const long long value = std::strtoll(at.text.c_str(), &end, 10);
   if (at.text.empty() || *end != '\0') {
     node_->FailAt(&at, key, "must be a whole number, is " + Describe(at));
+  }
+  if (HasLeadingZeros(at.text)) {
+    node_->FailAt(&at, key, "must be a whole number without leading zeros, is " + Quote(at.text));
   }
   if (value > INT32_MAX || value < INT32_MIN) {
     node_->FailAt(&at, key, "is out of range: " + at.text);

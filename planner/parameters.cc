@@ -1,27 +1,17 @@
 #include "sidestep/planner/parameters.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
 #include "sidestep/core/joined.h"
 #include "sidestep/core/number_text.h"
+#include "sidestep/core/parse_number.h"
 
 namespace sidestep::planner {
 namespace {
 
 constexpr const char* kTypes[] = {"number", "whole number", "true or false", "word"};
-
-// All of a text as a number.
-template <class Number>
-std::optional<Number> Parse(const std::string& text) {
-  Number number = 0;
-  const char* const end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data(), end, number);
-  if (parsed.ec != std::errc() || parsed.ptr != end) return std::nullopt;
-  return number;
-}
 
 std::optional<ParameterValue> ParseAs(const ParameterValue& like, const std::string& text) {
   if (std::holds_alternative<std::string>(like)) return text;
@@ -30,8 +20,8 @@ std::optional<ParameterValue> ParseAs(const ParameterValue& like, const std::str
     if (text == "false") return false;
     return std::nullopt;
   }
-  if (std::holds_alternative<int>(like)) return Parse<int>(text);
-  return Parse<double>(text);
+  if (std::holds_alternative<int>(like)) return NumberIn<int>(text);
+  return NumberIn<double>(text);
 }
 
 std::vector<std::string> NamesOf(const std::vector<Parameter>& declared) {
@@ -69,6 +59,12 @@ ParameterValue ParseValue(const Parameter& parameter, const std::string& text) {
   const std::optional<ParameterValue> value = ParseAs(parameter.default_value, text);
   if (!value) {
     throw std::invalid_argument("must be a " + TypeOf(parameter) + ", is '" + text + "'");
+  }
+  const bool is_number =
+      std::holds_alternative<double>(*value) || std::holds_alternative<int>(*value);
+  if (is_number && HasLeadingZeros(text)) {
+    throw std::invalid_argument("must be a " + TypeOf(parameter) + " without leading zeros, is '" +
+                                text + "'");
   }
   CheckValue(parameter, *value);
   return *value;

@@ -66,6 +66,10 @@ TEST(ScenarioPlanner, IsRefusedWithItsLineIfItIsWrong) {
             "mine.yaml:7: planner.sigma_obs: must be from 1e-05 to 1000, is 0");
   EXPECT_EQ(Complaint("name: gpmp, epsilon_m: 0.1, n_int: 1.5"),
             "mine.yaml:7: planner.n_int: must be a whole number, is '1.5'");
+  EXPECT_EQ(Complaint("name: gpmp, epsilon_m: 0.1", {{"planner.n_int", "010"}}),
+            "--set planner.n_int: must be a whole number without leading zeros, is '010'");
+  EXPECT_EQ(Complaint("name: gpmp, epsilon_m: 0.1, sigma_obs: 01"),
+            "mine.yaml:7: planner.sigma_obs: must be a number without leading zeros, is '01'");
   EXPECT_EQ(Complaint("name: gpmp, epsilon_m: 0.1", {{"planner.n_int", "101"}}),
             "--set planner.n_int: must be from 0 to 100, is 101");
   const std::string unknown = Complaint("name: gpmp, epsilon_m: 0.1, sigma: 1");

@@ -140,6 +140,8 @@ TEST(SweepOf, TakesEveryOptionOfAChoiceThatIsLeftOpenAndTheScenariosSeed) {
   EXPECT_EQ(fixed.At(0).seed, 9u);
   space.settings = {"seed=nine"};
   EXPECT_EQ(Complaint(space), "--set seed: must be a whole number >= 0, is 'nine'");
+  space.settings = {"seed=09"};
+  EXPECT_EQ(Complaint(space), "--set seed: must be a whole number without leading zeros, is '09'");
 }
 
 TEST(SweepOf, RefusesWhatCannotBeVaried) {
