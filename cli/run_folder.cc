@@ -28,7 +28,9 @@ RunFolder::RunFolder(const std::string& out, const bench::RunIdentity& identity)
     : out_(out, {"trace.h5", "result.json", kJournalName}),
       identity_(identity),
       journal_(out_.path() + "/" + kJournalName, Provenance(identity),
-               [](const std::string& why) { PrintError("{}; the run goes on\n", why); }) {}
+               [](const std::string& why) { PrintError("{}; the run goes on\n", why); }) {
+  out_.Lock();  // the journal begins with the first thing that it keeps
+}
 
 void RunFolder::KeepAndTell(bench::EpisodeResult& result, const scenarios::Scenario& scenario,
                             bool as_json) {

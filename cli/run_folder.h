@@ -22,10 +22,12 @@ std::string WriteResults(const bench::EpisodeResult& result, const scenarios::Sc
 
 /// The files of one run: trace.h5 and result.json, and as long as they are not there a journal of
 /// what has been recorded so far, which `sidestep salvage` makes them from. A folder that was made
-/// for a run that is then refused goes again.
+/// for a run that is then refused goes again. As long as this lives, no other run gets the folder:
+/// it would replace the results.
 class RunFolder {
  public:
-  /// @throws InputError if `out` cannot be made a folder, or cannot take the files.
+  /// @throws InputError if `out` cannot be made a folder, cannot take the files, or another run
+  /// writes there.
   RunFolder(const std::string& out, const bench::RunIdentity& identity);
 
   record::Journal& journal() { return journal_; }
@@ -36,7 +38,7 @@ class RunFolder {
   void KeepAndTell(bench::EpisodeResult& result, const scenarios::Scenario& scenario, bool as_json);
 
  private:
-  const OutFolder out_;
+  OutFolder out_;
   const bench::RunIdentity identity_;
   record::Journal journal_;
 };

@@ -136,6 +136,27 @@ TEST_P(KilledAfter, ARunInSimulationLeavesItsBeginning) {
 INSTANTIATE_TEST_SUITE_P(Parts, KilledAfter, ::testing::Values(1, 3),
                          [](const auto& test) { return std::to_string(test.param); });
 
+TEST(RunFolder, IsRefusedToASecondRunAsLongAsTheFirstWritesThere) {
+  const TemporaryFolder folder;
+  const std::string out = folder.path() / "out";
+  // By the slower planner, so that it takes long enough.
+  Running first(Sidestep({"run", "hsr_walkway", "--seed", "1", "--set", "planner.name=gpmp",
+                          "--set", "horizon.duration_s=20", "--out", out}));
+  ASSERT_TRUE(WaitForParts(out, 1));
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"run", "hsr_walkway", "--seed", "2"},
+        {"hardware", "run", "hardware_single_table"}}) {
+    std::vector<std::string> command = Sidestep(words);
+    command.insert(command.end(), {"--out", out});
+    const Finished second = RunProgram(command);
+    EXPECT_EQ(second.exit_code, 2);
+    EXPECT_EQ(second.err, "--out: '" + out + "': another command is writing here just now\n");
+  }
+  EXPECT_EQ(first.Finish().exit_code, 0);
+  EXPECT_EQ(NamesIn(out), (std::vector<std::string>{"result.json", "trace.h5"}));
+  EXPECT_EQ(ResultIn(out).at("seed"), 1);
+}
+
 // A scenario on a simulated Panda, both in lock-step.
 class CutOffOnHardware : public ::testing::TestWithParam<std::size_t> {
  protected:
