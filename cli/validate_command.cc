@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -83,6 +84,12 @@ double MostBytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return 1024 * static_cast<double>(usage.ru_maxrss);
+}
+
+// Six digits say enough of what was measured; what was counted, and a hash, only the whole number.
+std::string FactText(double value) {
+  const bool is_whole = value == std::trunc(value) && std::abs(value) <= 0x1p53;
+  return FiniteText(is_whole ? "{:.0f}" : "{:.6g}", value);
 }
 
 bool IsSoak(const bench::ValidationCase& one) {
@@ -170,7 +177,7 @@ class Validation {
                  out.path());
     PrintOutcome(episode.result, scenario);
     for (const auto& [fact, value] : episode.row.metrics) {
-      Print("{:<28} {}\n", fact, FiniteText("{:.6g}", value));
+      Print("{:<28} {}\n", fact, FactText(value));
     }
     Print("written          {}/result.json, {}/trace.h5\n", out.path(), out.path());
     return 0;

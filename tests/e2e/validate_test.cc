@@ -31,6 +31,7 @@ TEST(Validate, RunsACaseOfAReportAgainToTheSameBytes) {
         "straight_line", {"--only", "envelope:cross:0.25:1", "--out", folder.path() / out});
     ASSERT_EQ(finished.exit_code, 0) << finished.err;
     EXPECT_THAT(finished.out, HasSubstr("tool_speed_m_s"));
+    EXPECT_THAT(finished.out, ::testing::ContainsRegex("\ncommands_hash +[0-9]+\n"));
   }
   const std::string trace = BytesOf(folder.path() / "one" / "trace.h5");
   EXPECT_GT(trace.size(), 10000u);
