@@ -48,6 +48,12 @@ std::string FactorLines(const std::vector<RunRow>& rows) {
   return varied + fixed;
 }
 
+// What the table lists down, and what the columns are values of.
+std::string AxesText(const TableAxes& axes) {
+  if (axes.across.empty()) return axes.down;
+  return axes.down + (axes.down.empty() ? "by " : ", by ") + axes.across;
+}
+
 std::string PairedText(const std::vector<RunRow>& rows, const TableAxes& axes) {
   const std::string table = PairedTable(rows, axes);
   if (table.empty()) return "";
@@ -96,7 +102,7 @@ std::string OutcomeTable(const std::vector<RunRow>& rows, const TableAxes& axes)
     totals[column].Count(row);
     ++endings[row.outcome][column];
   }
-  std::string text = "| " + TableCell(down) + " |";
+  std::string text = "| " + TableCell(AxesText(axes)) + " |";
   for (const std::string& column : columns) text += " " + TableCell(column) + " |";
   text += "\n|---|";
   for (std::size_t i = 0; i < columns.size(); ++i) text += "---|";

@@ -20,7 +20,8 @@ std::vector<std::string> FactorValues(const std::vector<RunRow>& rows, const std
 
 /// A Markdown table: how many episodes reached the goal touching nothing, of how many, for each
 /// value of one factor (down) and another (across), in the order in which they come; below it how
-/// the others ended. Without `down` only the sums; without `across` one column.
+/// the others ended. Without `down` only the sums; without `across` one column. Above the values
+/// that it lists down stand the names of both factors: "behaviour, by predictor".
 std::string OutcomeTable(const std::vector<RunRow>& rows, const TableAxes& axes);
 
 /// What a sweep is of.

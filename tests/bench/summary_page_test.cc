@@ -43,7 +43,7 @@ TEST(OutcomeTable, CountsGoalsAndSaysHowTheOthersEnded) {
       Row("circle", "kalman_cv", "timeout"),
   };
   EXPECT_EQ(OutcomeTable(rows, {"behaviour", "predictor"}),
-            "| behaviour | two_frame | kalman_cv |\n"
+            "| behaviour, by predictor | two_frame | kalman_cv |\n"
             "|---|---|---|\n"
             "| stop | 1/2 | 1/1 |\n"
             "| circle | 0/1 | 0/1 |\n"
@@ -60,12 +60,15 @@ TEST(OutcomeTable, NeedsNoAxes) {
   EXPECT_EQ(OutcomeTable(rows, {"behaviour", ""}),
             "| behaviour | episodes |\n|---|---|\n| stop | 1/1 |\n| turn | 0/1 |\n"
             "| all | 1/2 |\n| timeout | 1 |\n");
+  EXPECT_EQ(OutcomeTable(rows, {"", "behaviour"}),
+            "| by behaviour | stop | turn |\n|---|---|---|\n| all | 1/1 | 0/1 |\n"
+            "| timeout | 0 | 1 |\n");
 }
 
 TEST(OutcomeTable, HoldsNamesThatLookLikeMarkdown) {
   const std::vector<RunRow> rows = {Row("a|b\nc", "imm", "goal")};
   EXPECT_EQ(OutcomeTable(rows, {"behaviour", "predictor"}),
-            "| behaviour | imm |\n|---|---|\n| a\\|b c | 1/1 |\n| all | 1/1 |\n");
+            "| behaviour, by predictor | imm |\n|---|---|\n| a\\|b c | 1/1 |\n| all | 1/1 |\n");
 }
 
 // An episode of one seed at one pace.
