@@ -48,12 +48,17 @@ std::string ToString(HindsightVerdict verdict) {
   throw std::invalid_argument("unknown HindsightVerdict");
 }
 
+std::optional<std::string> WhyCutShort(const record::Recording& recording) {
+  return record::FirstTouch(recording) ? std::nullopt : record::WhyAborted(recording);
+}
+
 Hindsight LookBack(const record::Recording& recording, const scenarios::Scenario& scenario,
                    const robot::RobotModel& robot, int max_guesses, std::uint64_t seed) {
   if (static_cast<int>(recording.joints.size()) != robot.num_joints()) {
     throw std::invalid_argument("LookBack: the recording is of another robot");
   }
   if (recording.control.empty()) throw std::invalid_argument("LookBack: nothing was recorded");
+  if (WhyCutShort(recording)) throw std::invalid_argument("LookBack: the episode was cut short");
   const std::string why_not = WhyNoRecordedFields(recording, scenario);
   if (!why_not.empty()) throw std::invalid_argument("LookBack: " + why_not);
   Hindsight hindsight;

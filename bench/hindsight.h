@@ -41,13 +41,18 @@ struct Hindsight {
   std::vector<HindsightCycle> cycles;  ///< those whose plan took effect before that, in order
 };
 
+/// Why the episode was aborted, where nothing had been touched: when the link was lost, or a person
+/// stopped it, no plan could have reached the goal, so there is nothing to look back at.
+std::optional<std::string> WhyCutShort(const record::Recording& recording);
+
 /// Could what failed have been known in time? For each cycle before the first contact (or the end,
 /// if the goal was never reached) two long searches (bench/free_path_search.h) begin where the arm
 /// was when that cycle's plan took effect: one knows what was known then (bench/recorded_fields.h),
 /// the other all that came. That one finds nothing does not prove that there is nothing.
 /// @param scenario of the recording, with its task resolved.
-/// @throws std::invalid_argument for a recording of another robot, without control samples, or
-/// whose fields cannot be made again (WhyNoRecordedFields).
+/// @throws std::invalid_argument for a recording of another robot, without control samples, of an
+/// episode that was cut short (WhyCutShort), or whose fields cannot be made again
+/// (WhyNoRecordedFields).
 Hindsight LookBack(const record::Recording& recording, const scenarios::Scenario& scenario,
                    const robot::RobotModel& robot, int max_guesses, std::uint64_t seed);
 

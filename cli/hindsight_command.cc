@@ -14,6 +14,7 @@
 #include "sidestep/cli/trace_files.h"
 #include "sidestep/cli/wiring.h"
 #include "sidestep/core/input_error.h"
+#include "sidestep/record/questions.h"
 
 namespace sidestep::cli {
 namespace {
@@ -46,6 +47,11 @@ void PrintCycles(const std::vector<bench::HindsightCycle>& cycles) {
 void LookBackAt(const render::NamedRecording& trace, const HindsightOptions& options,
                 const DataPaths& paths) {
   const record::Recording& recording = trace.recording;
+  if (const auto why = bench::WhyCutShort(recording)) {
+    Print("{}: was aborted at {:.2f} s: {}\n", trace.name, record::EndOf(recording).seconds(),
+          OneLine(*why));
+    return;
+  }
   if (recording.scenario_yaml.empty()) throw InputError(trace.name, "holds no scenario");
   scenarios::Scenario scenario =
       scenarios::ParseScenario(recording.scenario_yaml, trace.name + ": scenario_yaml");
@@ -98,7 +104,8 @@ void AddHindsightCommand(CommandLine& line) {
       "known\n"
       "  not known in time  as long as a way was left, the plan was thought to be free, or no way\n"
       "                     was known\n"
-      "  no way             none was left from the first cycle on, as far as the search can tell");
+      "  no way             none was left from the first cycle on, as far as the search can tell\n"
+      "Of a run that was aborted before it touched anything it says why, and asks no further.");
   hindsight->callback([&line, options] { line.exit_code = Hindsight(*options); });
 }
 

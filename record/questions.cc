@@ -34,6 +34,13 @@ EpisodeTime EndOf(const Recording& recording) {
   return end;
 }
 
+std::optional<std::string> WhyAborted(const Recording& recording) {
+  const auto outcome = recording.header.find("outcome");
+  if (outcome == recording.header.end() || outcome->second != "aborted") return std::nullopt;
+  const auto reason = recording.header.find("reason");
+  return reason == recording.header.end() ? "the trace does not say why" : reason->second;
+}
+
 const ControlSample* TickAt(const Recording& recording, EpisodeTime t) {
   const std::vector<ControlSample>& ticks = recording.control;
   if (ticks.empty()) return nullptr;

@@ -14,6 +14,8 @@ namespace sidestep::record {
 
 /// When the last sample was taken; zero if there is none.
 EpisodeTime EndOf(const Recording& recording);
+/// Why the episode was aborted, at its end; none if it was not.
+std::optional<std::string> WhyAborted(const Recording& recording);
 /// The latest tick at or before `t`, or the first one; null: there is none.
 const ControlSample* TickAt(const Recording& recording, EpisodeTime t);
 

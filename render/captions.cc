@@ -72,9 +72,7 @@ std::string Supervision(const SafetyEvent& event) {
 }
 
 Status EpisodeStatusAt(const record::Recording& recording, EpisodeTime t) {
-  const auto outcome = recording.header.find("outcome");
-  const bool is_cut_off = outcome != recording.header.end() && outcome->second == "aborted" &&
-                          t >= record::EndOf(recording);
+  const bool is_cut_off = record::WhyAborted(recording) && t >= record::EndOf(recording);
   const std::string cut_off =
       is_cut_off ? "ABORTED at " + Seconds(record::EndOf(recording).seconds()) : "";
   const std::optional<record::Touch> touch = record::FirstTouch(recording, t);
@@ -101,6 +99,7 @@ Status EpisodeStatusAt(const record::Recording& recording, EpisodeTime t) {
   }
   const std::optional<record::Clearance> now = record::ClearanceAt(recording, t);
   if (!now) {
+    const auto outcome = recording.header.find("outcome");
     const bool is_unjudged = outcome != recording.header.end() && outcome->second == "unjudged";
     return {is_unjudged ? "contact unjudged" : "", Mood::kNeutral};
   }

@@ -208,6 +208,12 @@ TEST_P(CutOffOnHardware, ByANetworkThatIsSilentKeepsItsResults) {
   EXPECT_THAT(client.err, HasSubstr("the robot sends no state"));
   EXPECT_EQ(NamesIn(out_), (std::vector<std::string>{"result.json", "trace.h5"}));
   EXPECT_EQ(record::ReadRecording(out_ + "/trace.h5").joints.size(), 7u);
+
+  const Finished hindsight = RunProgram(Sidestep({"hindsight", out_ + "/trace.h5"}));
+  EXPECT_EQ(hindsight.exit_code, 0) << hindsight.err;
+  EXPECT_THAT(hindsight.out,
+              ::testing::MatchesRegex(".*/trace.h5: was aborted at [0-9.]+ s: .*sends no state.*"));
+  EXPECT_EQ(std::count(hindsight.out.begin(), hindsight.out.end(), '\n'), 1) << hindsight.out;
 }
 
 INSTANTIATE_TEST_SUITE_P(Parts, CutOffOnHardware, ::testing::Values(1, 3),

@@ -77,6 +77,19 @@ TEST(Hindsight, FindsNoWayWhereThereIsNone) {
   EXPECT_FALSE(hindsight.cycles.empty());
 }
 
+TEST(Hindsight, DoesNotAskThePlannerWhyARunWasAborted) {
+  LookedBack run = RunAndLookBack("static");
+  EXPECT_EQ(WhyCutShort(run.recording), std::nullopt);
+  run.recording.header["outcome"] = "aborted";
+  run.recording.header["reason"] = "the robot sends no state";
+  // What was touched before is looked back at.
+  EXPECT_EQ(WhyCutShort(run.recording), std::nullopt);
+  EXPECT_TRUE(LookBack(run.recording, run.scenario, run.robot, 1, 1).contact);
+  run.recording.truth.clear();
+  EXPECT_EQ(WhyCutShort(run.recording), "the robot sends no state");
+  EXPECT_THROW(LookBack(run.recording, run.scenario, run.robot, 1, 1), std::invalid_argument);
+}
+
 TEST(Hindsight, RefusesARecordingOfAnotherRobotOrWithoutMotion) {
   const LookedBack run = RunAndLookBack("prediction");
   record::Recording other = run.recording;

@@ -39,6 +39,19 @@ TEST(Questions, TheEndIsWhereTheLastSampleIs) {
   EXPECT_EQ(EndOf(Recording()), EpisodeTime(0));
 }
 
+TEST(Questions, WhatWasAbortedSaysWhy) {
+  Recording recording;
+  EXPECT_EQ(WhyAborted(recording), std::nullopt);
+  recording.header["outcome"] = "planner_failed";
+  recording.header["reason"] = "none of 3 plans was free";
+  EXPECT_EQ(WhyAborted(recording), std::nullopt);
+  recording.header["outcome"] = "aborted";
+  recording.header["reason"] = "the robot sends no state";
+  EXPECT_EQ(WhyAborted(recording), "the robot sends no state");
+  recording.header.erase("reason");
+  EXPECT_EQ(WhyAborted(recording), "the trace does not say why");
+}
+
 TEST(Questions, TheTickOfAMomentIsTheLatestUntilThen) {
   Recording recording;
   EXPECT_EQ(TickAt(recording, EpisodeTime(1)), nullptr);
