@@ -76,10 +76,17 @@ void LookBackAt(const render::NamedRecording& trace, const HindsightOptions& opt
 
 int Hindsight(const HindsightOptions& options) {
   const DataPaths paths = FindDataPaths(options.models);
-  for (const render::NamedRecording& trace : ReadTraces(options.traces)) {
-    LookBackAt(trace, options, paths);
+  int exit_code = 0;
+  for (const std::string& path : options.traces) {
+    try {
+      LookBackAt(ReadTraces({path}).front(), options, paths);
+    } catch (const InputError& error) {
+      FinishOutput();  // what was said of those before comes before
+      PrintError("{}\n", OneLine(error.what()));
+      exit_code = 2;
+    }
   }
-  return 0;
+  return exit_code;
 }
 
 }  // namespace
@@ -105,7 +112,8 @@ void AddHindsightCommand(CommandLine& line) {
       "  not known in time  as long as a way was left, the plan was thought to be free, or no way\n"
       "                     was known\n"
       "  no way             none was left from the first cycle on, as far as the search can tell\n"
-      "Of a run that was aborted before it touched anything it says why, and asks no further.");
+      "Of a run that was aborted before it touched anything it says why, and asks no further.\n"
+      "A trace that cannot be read is told, the others are looked at, and the exit code is 2.");
   hindsight->callback([&line, options] { line.exit_code = Hindsight(*options); });
 }
 

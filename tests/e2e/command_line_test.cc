@@ -626,6 +626,25 @@ TEST(Run, TellsWhatWasTouchedAndTheDwellThatWasAskedFor) {
   EXPECT_THAT(run("0").out, ::testing::Not(HasSubstr("dwell")));
 }
 
+TEST(Hindsight, TellsOfATraceThatCannotBeReadAndLooksAtTheOthers) {
+  const TemporaryFolder folder;
+  const std::string good = folder.path() / "trace.h5", broken = folder.path() / "broken.h5",
+                    missing = folder.path() / "missing.h5";
+  ASSERT_EQ(Sidestep({"run", "hsr_walkway", "--set", "planner.name=straight_line", "--knowledge",
+                      "static", "--out", folder.path()})
+                .exit_code,
+            0);
+  std::ofstream(broken) << "no trace";
+  const Finished hindsight =
+      Sidestep({"hindsight", "--brief", "--guesses", "1", broken, good, missing, good});
+  EXPECT_EQ(hindsight.exit_code, 2);
+  EXPECT_THAT(hindsight.err,
+              ::testing::MatchesRegex(broken + ": [^\n]*\n" + missing + ": no such file\n"));
+  EXPECT_EQ(std::count(hindsight.out.begin(), hindsight.out.end(), '\n'), 2) << hindsight.out;
+  EXPECT_THAT(hindsight.out, StartsWith(good + ": "));
+  EXPECT_EQ(Sidestep({"hindsight", "--brief", "--guesses", "1", good}).exit_code, 0);
+}
+
 TEST(Compare, TellsWhichRunsWouldHaveTripped) {
   const TemporaryFolder folder;
   const auto run = [&](const std::string& name, const std::string& horizon_s) {
