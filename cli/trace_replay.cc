@@ -107,7 +107,9 @@ render::ReplaySet MakeReplaySet(const std::vector<render::NamedRecording>& trace
     extras.why_no_robot = origin.why_no_robot;
     if (origin.scenario) {
       extras.margin_m = origin.scenario->epsilon_m;
-      extras.speeds = SpeedsOf(*origin.scenario);
+      // What a camera sees goes its own way.
+      const bool is_seen = recording.header.contains("camera");
+      extras.speeds = is_seen ? "" : SpeedsOf(*origin.scenario);
     }
     extras.field = SampleField(recording, origin, options.field_points);
     set.replays.push_back(render::MakeReplay(model, std::move(extras)));

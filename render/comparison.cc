@@ -24,6 +24,7 @@ constexpr double kHeaderHeight = 40, kLegendHeight = 34, kBarHeight = 30, kGap =
 constexpr double kLargeText = 26, kText = 23, kSmallText = 21;
 constexpr double kTextInset = 10;
 constexpr int kContactFrame = 5;
+constexpr const char* kUnknownSpeed = "obstacle's speed not known";
 // Kept free around what is to be seen, as a share of the scene.
 constexpr double kSceneMargin = 0.03;
 constexpr int kLeastScenePixels = 32;
@@ -220,7 +221,8 @@ void Comparison::DrawPanel(Image& image, Panel& panel, EpisodeTime t) const {
   x = font_.Draw(image, place.x + inset, bar_y + (bar - text * status_shrink) / 2,
                  text * status_shrink, kWhite, status.text);
   const std::string note =
-      finished ? "finished" : "obstacle " + FiniteText("{:.2f} m/s", ObstacleSpeedAt(recording, t));
+      finished ? "finished"
+               : FiniteText("obstacle {:.2f} m/s", ObstacleSpeedAt(recording, t), kUnknownSpeed);
   const double note_x = place.x + place.width - inset - font_.Width(note, small);
   if (note_x > x + inset && (finished || !recording.obstacles.empty())) {
     font_.Draw(image, note_x, bar_y + (bar - small) / 2, small, kWhite, note);

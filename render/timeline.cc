@@ -1,6 +1,8 @@
 #include "sidestep/render/timeline.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "sidestep/record/questions.h"
 #include "sidestep/scenarios/scenario.h"
@@ -58,6 +60,33 @@ std::vector<Pose> SeenAt(const record::Recording& recording, EpisodeTime t) {
   return poses;
 }
 
+bool IsSeenByCamera(const record::Recording& recording) {
+  return recording.truth.empty() && recording.header.contains("camera");
+}
+
+// From picture to picture, the error of a place would count as much as the way.
+double SeenSpeedAt(const record::Recording& recording, EpisodeTime t) {
+  constexpr HorizonOffset kWindow(0.25);
+  double fastest_m_s = std::numeric_limits<double>::quiet_NaN();
+  for (const std::string& obstacle : recording.obstacles) {
+    std::vector<EpisodeTime> times;
+    std::vector<Eigen::Vector3d> p_WO;
+    for (const record::ObservationRecord& scan : recording.observations) {
+      if (scan.t > t) break;
+      if (scan.t < t - kWindow) continue;
+      for (const record::SeenObject& object : scan.objects) {
+        if (object.id != obstacle) continue;
+        times.push_back(scan.t);
+        p_WO.push_back(object.X_WO.translation());
+      }
+    }
+    if (times.empty() || times.back() <= times.front()) continue;
+    const double way_m = (p_WO.back() - p_WO.front()).norm();
+    fastest_m_s = std::fmax(fastest_m_s, way_m / (times.back() - times.front()).seconds());
+  }
+  return fastest_m_s;
+}
+
 template <typename Sample>
 EpisodeTime TimeOfSample(const Sample& sample) {
   return sample.t;
@@ -78,8 +107,7 @@ Pose PoseAt(const std::vector<EpisodeTime>& times, const std::vector<Pose>& pose
 
 std::vector<Pose> ObstaclesAt(const record::Recording& recording, EpisodeTime t) {
   if (recording.truth.empty()) {
-    const bool is_seen = recording.header.contains("camera");
-    return is_seen ? SeenAt(recording, t) : PrescribedAt(recording, t);
+    return IsSeenByCamera(recording) ? SeenAt(recording, t) : PrescribedAt(recording, t);
   }
   std::vector<Pose> poses;
   const Position at = Locate(recording.truth, t, TimeOfSample<TruthSample>);
@@ -92,6 +120,7 @@ std::vector<Pose> ObstaclesAt(const record::Recording& recording, EpisodeTime t)
 }
 
 double ObstacleSpeedAt(const record::Recording& recording, EpisodeTime t) {
+  if (IsSeenByCamera(recording)) return SeenSpeedAt(recording, t);
   constexpr HorizonOffset kHalfWindow(0.025);
   const EpisodeTime begin = std::max(EpisodeTime(0), t - kHalfWindow);
   const EpisodeTime end = std::min(record::EndOf(recording), t + kHalfWindow);

@@ -25,7 +25,8 @@ Pose PoseAt(const std::vector<EpisodeTime>& times, const std::vector<Pose>& pose
 /// prescribes it.
 std::vector<Pose> ObstaclesAt(const record::Recording& recording, EpisodeTime t);
 
-/// How fast the fastest obstacle moves [m/s].
+/// How fast the fastest obstacle moves [m/s]; where a camera saw them, by where it saw each in the
+/// quarter of a second before. NaN if it saw none twice in that time: nobody knows.
 double ObstacleSpeedAt(const record::Recording& recording, EpisodeTime t);
 
 /// The cycle whose plan the robot follows, or null before the first plan takes effect.

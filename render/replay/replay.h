@@ -77,7 +77,7 @@ struct Replay {
   std::vector<ReplayGeom> geoms;
   std::vector<ReplayMesh> meshes;
   std::vector<std::vector<Pose>> X_WB;     ///< of each frame, of each body that moves
-  std::vector<double> obstacle_speed_m_s;  ///< of each frame
+  std::vector<double> obstacle_speed_m_s;  ///< of each frame; NaN: not known
   std::vector<ReplayStatus> statuses;
   double trail_step_s = 0;
   Eigen::Matrix3Xd p_WTrail;  ///< [m] where the arm's tip was

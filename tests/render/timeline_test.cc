@@ -91,6 +91,32 @@ TEST(Timeline, FollowsWhatACameraSawWhereNothingWasPrescribed) {
   }
 }
 
+TEST(Timeline, TellsTheSpeedOfWhatACameraSees) {
+  record::Recording recording = MakeSampleRecording({});
+  recording.truth.clear();
+  // As prescribed it would go at 1.4 m/s.
+  recording.scenario_yaml =
+      scenarios::ToYaml(scenarios::LoadScenario(SIDESTEP_SOURCE_DIR "/scenarios/hsr_walkway.yaml"));
+  recording.obstacles = {"hsr", "cart"};
+  recording.header["camera"] = "recorded, 1234";
+  recording.observations.clear();
+  constexpr double kSpeed_m_s = 0.3, kLastSeen_s = 1.5;
+  for (int i = 0; i <= 60; ++i) {
+    record::ObservationRecord& scan = recording.observations.emplace_back();
+    scan.t = EpisodeTime(i / 30.0);
+    if (scan.t.seconds() > kLastSeen_s + 1e-9) continue;
+    scan.objects = {{"cart", Pose::Translation({1, 0, 0}), {}},
+                    {"hsr", Pose::Translation({0, kSpeed_m_s * scan.t.seconds(), 0}), {}}};
+  }
+  // Between pictures as well as at one.
+  for (const double t_s : {0.04, 0.1, 0.517, 0.55, 1.0, 1.55, 1.7}) {
+    EXPECT_NEAR(ObstacleSpeedAt(recording, EpisodeTime(t_s)), kSpeed_m_s, 1e-9) << t_s;
+  }
+  for (const double t_s : {0.0, 0.03, 1.8, 2.0}) {
+    EXPECT_TRUE(std::isnan(ObstacleSpeedAt(recording, EpisodeTime(t_s)))) << t_s;
+  }
+}
+
 TEST(Timeline, KnowsWhichPlanIsInForce) {
   record::Recording recording = MakeSampleRecording({});
   recording.cycles[3].accepted = false;     // observed at 0.3 s, of effect at 0.35 s

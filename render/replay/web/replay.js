@@ -219,6 +219,9 @@ function mountReplay(root, data, options = {}) {
     requestAnimationFrame(() => { if (isDue) render(); });
   }
 
+  const speedText = (speed) =>
+      Number.isNaN(speed) ? "obstacle's speed not known" : `obstacle ${speed.toFixed(2)} m/s`;
+
   // Everything as it is at state.t, at once.
   function render() {
     isDue = false;
@@ -230,7 +233,7 @@ function mountReplay(root, data, options = {}) {
       const isOver = state.t > trace.end + 1e-9;
       words.textContent = text;
       speed.textContent = isOver ? "finished"
-          : trace.movesObstacles ? `obstacle ${trace.obstacleSpeedAt(state.t).toFixed(2)} m/s` : "";
+          : trace.movesObstacles ? speedText(trace.obstacleSpeedAt(state.t)) : "";
       status.dataset.mood = mood;
     }
     tellField();
