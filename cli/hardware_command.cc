@@ -227,9 +227,7 @@ int GoToStart(const HardwareOptions& options) {
   const std::optional<std::string> aside = WhyNotAtStart(panda->Read().q, problem.scenario);
   Print("from the start   {:.4f} rad\n",
         (panda->Read().q - problem.scenario.q_start).cwiseAbs().maxCoeff());
-  for (const SafetyEvent& event : panda->TakeSafetyEvents()) {
-    Print("supervisor       {:.3f} s: {}: {}\n", event.t.seconds(), event.check, event.reaction);
-  }
+  PrintText(FindingsText(panda->TakeSafetyEvents(), !IsLoopback(options.robot)));
   FinishOutput();
   if (!why_stop.empty()) {
     PrintError("hardware go-to-start: it was stopped from outside: {}\n", why_stop);

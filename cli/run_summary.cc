@@ -9,6 +9,7 @@
 #include "sidestep/bench/result_file.h"
 #include "sidestep/bench/statistics.h"
 #include "sidestep/cli/console.h"
+#include "sidestep/control/safety.h"
 #include "sidestep/core/number_text.h"
 
 namespace sidestep::cli {
@@ -94,6 +95,21 @@ void PrintOutcome(const bench::EpisodeResult& result, const scenarios::Scenario&
     Print("supervisor       {} findings, the first at {:.3f} s: {}\n", findings.size(),
           findings.front().t.seconds(), findings.front().check);
   }
+}
+
+std::string FindingsText(const std::vector<SafetyEvent>& findings, bool is_real_robot) {
+  std::string text;
+  for (const SafetyEvent& event : findings) {
+    const double t_s = event.t.seconds();
+    if (event.check != control::ToString(control::SafetyCheck::kSlowAnswer)) {
+      text += fmt::format("supervisor       {:.3f} s: {}: {}\n", t_s, event.check, event.reaction);
+    } else if (is_real_robot) {
+      text += fmt::format(
+          "slow answer      {:.3f} s: a command took {:.2f} ms to make; Franka leaves {:.2f} ms\n",
+          t_s, 1e3 * event.value, 1e3 * event.limit);
+    }
+  }
+  return text;
 }
 
 }  // namespace sidestep::cli
