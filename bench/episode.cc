@@ -106,7 +106,7 @@ class Loop {
         planner_(MakePlanner(scenario, robot)),
         model_(sdf::MakeWorldModel(MakeWorldModelOptions(
             scenario, scenario.epsilon_m + robot.largest_sphere_radius_m(), world))),
-        horizon_s_(HorizonOf(scenario, *planner_)),
+        horizon_s_(HorizonOf(scenario, robot)),
         replanner_(*planner_, {horizon_s_, scenario.step_s, scenario.q_goal, FleesWithin(scenario),
                                planner_->DirectTime_s(scenario.q_start, scenario.q_goal)}),
         goal_(scenario.q_goal, scenario.dwell_s, robot::ToleranceScale(planner_->robot())),

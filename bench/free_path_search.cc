@@ -26,9 +26,9 @@ bool IsToolHeldBack(const scenarios::Scenario& scenario) {
 
 // Planners do not know how fast the tool may be: with more time they find slower motions.
 std::vector<double> HorizonsToTry(const scenarios::Scenario& scenario,
-                                  const planner::Planner& planner) {
+                                  const robot::RobotModel& robot) {
   constexpr double kMore = 1.5;
-  const double horizon_s = HorizonOf(scenario, planner);
+  const double horizon_s = HorizonOf(scenario, robot);
   if (!IsToolHeldBack(scenario)) return {horizon_s};
   return {horizon_s, kMore * horizon_s};
 }
@@ -39,7 +39,7 @@ FreePath Search(const PathStart& start, int first_free, const sdf::DistanceField
                 int max_guesses, std::uint64_t seed) {
   const auto planner = MakePlanner(scenario, robot);
   std::vector<planner::PlanRequest> requests;
-  for (const double horizon_s : HorizonsToTry(scenario, *planner)) {
+  for (const double horizon_s : HorizonsToTry(scenario, robot)) {
     requests.push_back(RequestOf(scenario, horizon_s));
     planner::PlanRequest& request = requests.back();
     request.field = &field;

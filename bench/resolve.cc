@@ -9,7 +9,6 @@
 #include "sidestep/bench/true_world.h"
 #include "sidestep/core/input_error.h"
 #include "sidestep/core/solid.h"
-#include "sidestep/planner/registry.h"
 #include "sidestep/planner/self_clearance.h"
 #include "sidestep/scenarios/horizon_bounds.h"
 #include "sidestep/sdf/shape_field.h"
@@ -93,8 +92,7 @@ class TaskChecker {
 
   // A horizon is lengthened to what the direct motion takes: slower and slower, that is no horizon.
   void CheckHorizon() const {
-    const auto direct = planner::MakePlanner("straight_line", robot_, SettingsOf(scenario_), {});
-    const double horizon_s = HorizonOf(scenario_, *direct);
+    const double horizon_s = HorizonOf(scenario_, robot_);
     const double steps = std::round(horizon_s / scenario_.step_s);
     if (horizon_s <= scenarios::kMostHorizon_s && steps <= scenarios::kMostHorizonSteps) return;
     Fail("horizon.duration_s",

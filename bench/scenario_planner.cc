@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sidestep/core/joined.h"
+#include "sidestep/planner/direct_time.h"
 #include "sidestep/planner/parameters.h"
 #include "sidestep/planner/planner_settings.h"
 #include "sidestep/planner/registry.h"
@@ -117,11 +118,12 @@ planner::PlanRequest RequestOf(const scenarios::Scenario& scenario, double horiz
   return request;
 }
 
-double HorizonOf(const scenarios::Scenario& scenario, const planner::Planner& planner) {
+double HorizonOf(const scenarios::Scenario& scenario, const robot::RobotModel& robot) {
   constexpr double kRounding = 1e-9;
   const auto steps = [&](double time_s) { return std::ceil(time_s / scenario.step_s - kRounding); };
-  const double needed = steps(planner.DirectTime_s(scenario.q_start, scenario.q_goal)) +
-                        steps(scenario.longest_latency_s());
+  const double direct_s =
+      planner::DirectTime_s(robot, SettingsOf(scenario), scenario.q_start, scenario.q_goal);
+  const double needed = steps(direct_s) + steps(scenario.longest_latency_s());
   return std::max(scenario.horizon_s, needed * scenario.step_s);
 }
 

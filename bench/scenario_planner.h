@@ -31,6 +31,6 @@ planner::PlanRequest RequestOf(const scenarios::Scenario& scenario, double horiz
 
 /// How far ahead plans reach [s]: the scenario's horizon or, where its limits do not let the direct
 /// motion from start to goal be over by then, as many steps as that takes.
-double HorizonOf(const scenarios::Scenario& scenario, const planner::Planner& planner);
+double HorizonOf(const scenarios::Scenario& scenario, const robot::RobotModel& robot);
 
 }  // namespace sidestep::bench

@@ -1,8 +1,6 @@
 #include "sidestep/planner/planner.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <limits>
@@ -10,7 +8,7 @@
 #include <utility>
 
 #include "sidestep/core/goal.h"
-#include "sidestep/planner/tool_speed.h"
+#include "sidestep/planner/direct_time.h"
 #include "sidestep/robot/tolerance_scale.h"
 
 namespace sidestep::planner {
@@ -51,25 +49,7 @@ Planner::Planner(const robot::RobotModel& robot, const PlannerSettings& settings
 }
 
 double Planner::DirectTime_s(const Eigen::VectorXd& q_start, const Eigen::VectorXd& q_goal) const {
-  double time_s = 0;
-  for (int j = 0; j < robot_.num_joints(); ++j) {
-    const robot::JointLimits& joint = robot_.limits()[static_cast<std::size_t>(j)];
-    const double way = std::abs(q_goal(j) - q_start(j));
-    // Of the cubic over a time T the greatest velocity is 3/2 way / T, acceleration 6 way / T^2.
-    if (settings_.velocity_limits) {
-      time_s = std::max(time_s, 1.5 * way / (settings_.velocity_scale * joint.v_max));
-    }
-    if (settings_.acceleration_limits) {
-      time_s = std::max(time_s, std::sqrt(6 * way / (settings_.acceleration_scale * joint.a_max)));
-    }
-  }
-  if (std::isfinite(settings_.tool_speed_m_s)) {
-    Trajectory second = {Eigen::Vector2d(0, 1), Eigen::MatrixXd(q_start.size(), 2),
-                         Eigen::MatrixXd::Zero(q_start.size(), 2)};
-    second.q << q_start, q_goal;
-    time_s = std::max(time_s, GreatestToolSpeed_m_s(robot_, second, 0) / settings_.tool_speed_m_s);
-  }
-  return time_s;
+  return planner::DirectTime_s(robot_, settings_, q_start, q_goal);
 }
 
 PlanBudget Planner::BudgetOf(int work) const {

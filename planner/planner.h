@@ -84,10 +84,7 @@ class Planner {
   /// @throws std::invalid_argument for a request that means nothing (CheckPlanRequest).
   PlanResult Plan(const PlanRequest& request) const;
 
-  /// The least time [s] in which the direct motion from rest to rest (MakeDirectMotion) keeps the
-  /// limits of velocity and acceleration that the settings ask for, and their speed of the tool to
-  /// a thousandth. A shorter horizon would ask for what cannot be had.
-  /// @param q_start, q_goal shape n.
+  /// Of the direct motion, with this planner's robot and settings (planner/direct_time.h).
   double DirectTime_s(const Eigen::VectorXd& q_start, const Eigen::VectorXd& q_goal) const;
 
   virtual PlannerCapabilities capabilities() const { return {}; }
