@@ -200,7 +200,8 @@ void AddCheckRobotCommand(CommandLine& line) {
       ->add_option("--configurations", options->configurations,
                    "Random ones that are searched for self-contact [10000]")
       ->check(NumberFrom(1, 1e8));
-  check->add_option("--seed", options->seed, "Of the random configurations [1]");
+  check->add_option("--seed", options->seed, "Of the random configurations [1]")
+      ->check(NumberFrom(0, 2147483647));
   check->callback([&line, options] {
     options->command = line.text;
     line.exit_code = CheckRobot(*options);

@@ -13,7 +13,7 @@ namespace sidestep::cli {
 /// A check for options: a number from `least` to `most`, both included. CLI::Range takes NaN, and
 /// CLI11 reads 010 as eight.
 inline CLI::Validator NumberFrom(double least, double most) {
-  const std::string range = fmt::format("from {:g} to {:g}", least, most);
+  const std::string range = fmt::format("from {:.10g} to {:.10g}", least, most);
   const auto check = [least, most, range](const std::string& word) {
     double value = 0;
     const char* const end = word.data() + word.size();
