@@ -104,10 +104,11 @@ function(sidestep_test path)
   _sidestep_test_program(${target} "${folder}" ${path})
 endfunction()
 
-# sidestep_tests(<folder> <name>_test... DEPENDS <target>... [SLOW | HEAVY | THREADED])
+# sidestep_tests(<folder> <name>_test... [SOURCES <further file>...] DEPENDS <target>...
+#                [SLOW | HEAVY | THREADED])
 #
 # The same, of several files that need nothing of their own, as one program, tests_<folder>. Several
-# files are compiled as one, which takes the compiler a third of the time: so each has its names in a
+# files are compiled as one, which takes the compiler a third less time: so each has its names in a
 # namespace that is called as the file is.
 function(sidestep_tests folder)
   cmake_parse_arguments(ARG "SLOW;HEAVY;THREADED" "" "SOURCES;DEPENDS" ${ARGN})
