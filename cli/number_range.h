@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
+#include <optional>
 #include <string>
 
 #include "sidestep/core/parse_number.h"
@@ -15,11 +15,8 @@ namespace sidestep::cli {
 inline CLI::Validator NumberFrom(double least, double most) {
   const std::string range = fmt::format("from {:.10g} to {:.10g}", least, most);
   const auto check = [least, most, range](const std::string& word) {
-    double value = 0;
-    const char* const end = word.data() + word.size();
-    const auto parsed = std::from_chars(word.data(), end, value);
-    const bool is_inside =
-        parsed.ec == std::errc() && parsed.ptr == end && value >= least && value <= most;
+    const std::optional<double> value = NumberIn<double>(word);
+    const bool is_inside = value && *value >= least && *value <= most;
     if (is_inside && !HasLeadingZeros(word)) return std::string();
     return "must be a number " + range + (is_inside ? " without leading zeros" : "") + ", is '" +
            word + "'";
