@@ -473,7 +473,7 @@ TEST(Supervisor, DoesNotShakeTheArmWhereThePlanIsTooFastForTheTool) {
       settings.tool_speed_m_s = tool_m_s;
       Scene scene(settings);
       scene.Reach(Panda().configurations().at("table_forward"), duration_s);
-      return ShakingUntil(scene, 8);
+      return ShakingUntil(scene, 20);
     };
     const double planned = shaking_at(10);
     for (const double tool_m_s : {0.25, 0.1}) {
