@@ -27,9 +27,10 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 Finished Sidestep(std::vector<std::string> arguments,
-                  const std::vector<std::string>& environment = {}) {
+                  const std::vector<std::string>& environment = {},
+                  const std::string& working_directory = "") {
   arguments.insert(arguments.begin(), SIDESTEP_PROGRAM);
-  return RunProgram(arguments, environment);
+  return RunProgram(arguments, environment, working_directory);
 }
 
 struct Mistake {
@@ -42,7 +43,8 @@ std::ostream& operator<<(std::ostream& stream, const Mistake& m) { return stream
 class Mistakes : public ::testing::TestWithParam<Mistake> {};
 
 TEST_P(Mistakes, GetOneLineAndExitCodeTwo) {
-  const Finished finished = Sidestep(GetParam().arguments);
+  const TemporaryFolder folder;  // others are run at the same time, and a run has its folder alone
+  const Finished finished = Sidestep(GetParam().arguments, {}, folder.path());
   EXPECT_EQ(finished.exit_code, 2);
   EXPECT_EQ(finished.out, "");
   EXPECT_EQ(std::count(finished.err.begin(), finished.err.end(), '\n'), 1) << finished.err;
